@@ -12,14 +12,13 @@
 
 use std::error::Error;
 use std::process::ExitCode;
-use std::time::Instant;
 
 use clamber::animation::ik::{LookAt, LookMemory, PoleMemory, TwoBoneGoal};
 use clamber::animation::{AnimationSet, Animator, ClipId, Layer, LayerKind, PoseBuffers};
 use clamber::mesh::Rig;
 use clamber::rig::{Palette, Playback, Pose};
 use clamber_body::Humanoid;
-use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+use clamber_scenes::measure::{Bound, Cells, exit_code, is_brief, mean_us, quantile};
 use glam::DVec3;
 
 /// Frames over which a time is averaged.
@@ -29,13 +28,7 @@ const FRAMES: u32 = 100;
 const DT: f64 = 1.0 / 60.0;
 
 fn main() -> ExitCode {
-    match run(is_brief()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(is_brief()))
 }
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
@@ -73,16 +66,16 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let mut body = Body::new(&rig)?;
     let mut times: [Vec<f64>; 6] = Default::default();
     for round in 0..if brief { 3 } else { 300 } {
-        times[0].push(timed(|_| Ok(sampling()?))?);
-        times[1].push(timed(|_| plain.frame(&set))?);
-        times[2].push(timed(|_| layered.frame(&set))?);
+        times[0].push(mean_us(FRAMES, |_| Ok(sampling()?))?);
+        times[1].push(mean_us(FRAMES, |_| plain.frame(&set))?);
+        times[2].push(mean_us(FRAMES, |_| layered.frame(&set))?);
         let to = if round % 2 == 0 { run } else { walk };
         fading.change(&set, to)?;
-        times[3].push(timed(|_| fading.frame(&set))?);
-        times[4].push(timed(|frame| {
+        times[3].push(mean_us(FRAMES, |_| fading.frame(&set))?);
+        times[4].push(mean_us(FRAMES, |frame| {
             changing.change(&set, if frame % 2 == 0 { run } else { walk })
         })?);
-        times[5].push(timed(|frame| body.solve(&rig, frame))?);
+        times[5].push(mean_us(FRAMES, |frame| body.solve(&rig, frame))?);
     }
     let [sampling, plain, layered, fading, changing, body] =
         times.map(|mut times| quantile(&mut times, 0.5));
@@ -99,15 +92,6 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let name = "the body / one clip sampled and its palette composed";
     cells.push(name, body / sampling, Bound::Most(1.0));
     cells.finish("animation", brief)
-}
-
-/// Runs [`FRAMES`] frames; returns the mean time of a frame, microseconds.
-fn timed(mut frame: impl FnMut(u32) -> Result<(), Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
-    let start = Instant::now();
-    for index in 0..FRAMES {
-        frame(index)?;
-    }
-    Ok(start.elapsed().as_secs_f64() * 1e6 / f64::from(FRAMES))
 }
 
 struct Player {

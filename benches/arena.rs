@@ -22,18 +22,18 @@ use std::time::Instant;
 
 use clamber::climber::ClimberInput;
 use clamber::world::{
-    Attachment, BodyPoses, Debris, DebrisConfig, DebrisSnapshot, MaterialPoint, Obstacle,
-    ObstacleId, RapierTerrain,
+    Attachment, BodyPoses, DebrisSnapshot, MaterialPoint, Obstacle, ObstacleId, RapierTerrain,
 };
-use clamber_colossus::{Brain, CreatureConfig, CreatureKind};
+use clamber_colossus::{CreatureConfig, CreatureKind};
 use clamber_fight::actions::STAB;
 use clamber_fight::{
     Arena, ArenaConfig, ArenaEvent, ArenaState, BowConfig, CreatureId, FighterConfig, FighterId,
     Projectile, ProjectileId, ProjectileKind, ProjectileMotion, creature_obstacle,
 };
-use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
-use clamber_scenes::rocks::scatter;
-use clamber_scenes::{giant, valley};
+use clamber_scenes::duel::Duel;
+use clamber_scenes::measure::{Bound, Cells, exit_code, is_brief, quantile};
+use clamber_scenes::rocks::FallingRocks;
+use clamber_scenes::valley;
 use glam::DVec3;
 
 /// Id of the terrain.
@@ -51,18 +51,12 @@ const GRIP: ClimberInput = ClimberInput {
 type Failure = Box<dyn Error>;
 
 fn main() -> ExitCode {
-    match run(is_brief()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(is_brief()))
 }
 
 fn run(brief: bool) -> Result<(), Failure> {
     let rounds = if brief { 20 } else { 3000 };
-    let kind = kind()?;
+    let kind = Duel::kind()?;
     let world = valley::world();
     let poses = BodyPoses::default();
     let valley = RapierTerrain::of_world(&world, &poses);
@@ -74,7 +68,7 @@ fn run(brief: bool) -> Result<(), Failure> {
         riding.step(&[GRIP, ClimberInput::IDLE], &terrain)?;
     }
     let times = measure(&mut riding, &terrain, rounds, |_| GRIP)?;
-    let tick = times.tick;
+    let tick = times[0];
     report(&mut cells, "", &times, tick);
     let bytes = riding.to_bytes()?.len();
     cells.value("a snapshot as bytes", bytes as f64);
@@ -89,13 +83,6 @@ fn run(brief: bool) -> Result<(), Failure> {
     cells.finish("arena", brief)
 }
 
-/// The giant with its brain.
-fn kind() -> Result<Arc<CreatureKind>, Failure> {
-    let brain = std::fs::read_to_string(giant::brain_path())?;
-    let brain = Brain::from_json(&brain, 1.0 / 60.0)?;
-    Ok(Arc::new(CreatureKind::new(&giant::model()?.rig, brain)?))
-}
-
 /// A climber that never tires and whose stabs break any plate.
 fn hero() -> FighterConfig {
     let mut config = FighterConfig::hero();
@@ -108,26 +95,39 @@ fn hero() -> FighterConfig {
 
 /// An arena with the giant, one climber above its back and another one in front of it.
 fn riders(kind: &Arc<CreatureKind>) -> Result<Arena, Failure> {
+    let mut arena = giant_alone(kind)?;
+    arena.add_fighter(hero(), DVec3::new(0.0, 37.0, -3.0))?;
+    arena.add_fighter(hero(), in_front())?;
+    Ok(arena)
+}
+
+/// An arena with the giant.
+fn giant_alone(kind: &Arc<CreatureKind>) -> Result<Arena, Failure> {
     let mut arena = Arena::new(ArenaConfig::default())?;
     let place = CreatureConfig {
         position: DVec3::Y * valley::height(0.0, 0.0),
         ..CreatureConfig::default()
     };
     arena.add_creature(Arc::clone(kind), place)?;
-    arena.add_fighter(hero(), DVec3::new(0.0, 37.0, -3.0))?;
-    let before = DVec3::new(4.0, valley::height(4.0, 25.0) + 1.0, 25.0);
-    arena.add_fighter(hero(), before)?;
     Ok(arena)
 }
 
-/// Medians, microseconds: a tick, a save, a load, a fingerprint, and a rollback.
-struct Times {
-    tick: f64,
-    save: f64,
-    load: f64,
-    fingerprint: f64,
-    rollback: f64,
+/// A place in front of the giant.
+fn in_front() -> DVec3 {
+    DVec3::new(4.0, valley::height(4.0, 25.0) + 1.0, 25.0)
 }
+
+/// Medians, microseconds: of each of [`OPERATIONS`].
+type Times = [f64; 5];
+
+/// The operations, each with the bound of its ratio to a plain tick.
+const OPERATIONS: [(&str, Option<f64>); 5] = [
+    ("a tick", None),
+    ("a save", Some(0.1)),
+    ("a load", Some(0.3)),
+    ("a fingerprint", None),
+    ("a rollback of eight ticks", Some(10.0)),
+];
 
 fn measure(
     arena: &mut Arena,
@@ -170,44 +170,20 @@ fn measure(
             arena.step(&[GRIP, ClimberInput::IDLE], terrain)?;
         }
     }
-    let [tick, save, load, fingerprint, rollback] = all.map(|mut times| quantile(&mut times, 0.5));
-    Ok(Times {
-        tick,
-        save,
-        load,
-        fingerprint,
-        rollback,
-    })
+    Ok(all.map(|mut times| quantile(&mut times, 0.5)))
 }
 
 /// Adds the times as rows, and the ratios of save, load and rollback to the plain tick.
 fn report(cells: &mut Cells, what: &str, times: &Times, plain: f64) {
-    let Times {
-        tick,
-        save,
-        load,
-        fingerprint,
-        rollback,
-    } = times;
-    for (name, value) in [
-        ("a tick", tick),
-        ("a save", save),
-        ("a load", load),
-        ("a fingerprint", fingerprint),
-        ("a rollback of eight ticks", rollback),
-    ] {
-        cells.value(&format!("{name}{what}, us"), *value);
+    for ((name, _), time) in OPERATIONS.iter().zip(times) {
+        cells.value(&format!("{name}{what}, us"), *time);
     }
-    let mut ratio = |name: &str, value: f64, most: f64| {
-        cells.push(
-            &format!("{name}{what} / a tick"),
-            value / plain,
-            Bound::Most(most),
-        );
-    };
-    ratio("a save", *save, 0.1);
-    ratio("a load", *load, 0.3);
-    ratio("a rollback of eight ticks", *rollback, 10.0);
+    for ((name, most), time) in OPERATIONS.iter().zip(times) {
+        if let Some(most) = most {
+            let name = format!("{name}{what} / a tick");
+            cells.push(&name, time / plain, Bound::Most(*most));
+        }
+    }
 }
 
 /// The arena in the state from which the fourth tick breaks the plate over the giant's nape, by a stab.
@@ -215,18 +191,13 @@ fn before_the_break(
     kind: &Arc<CreatureKind>,
     terrain: &[(ObstacleId, &dyn Obstacle)],
 ) -> Result<Arena, Failure> {
-    let mut arena = Arena::new(ArenaConfig::default())?;
-    let place = CreatureConfig {
-        position: DVec3::Y * valley::height(0.0, 0.0),
-        ..CreatureConfig::default()
-    };
-    let giant = arena.add_creature(Arc::clone(kind), place)?;
+    let mut arena = giant_alone(kind)?;
     let nape = kind
         .weak_points()
         .iter()
         .position(|point| point.name.contains("nape"));
     let nape = arena
-        .creature(giant)
+        .creature(CreatureId(0))
         .and_then(|giant| giant.weak_point(nape?));
     let nape = nape.ok_or("the giant has no weak point on its nape")?;
     let mut config = hero();
@@ -234,10 +205,7 @@ fn before_the_break(
     config.climber.ground.throw_acceleration = f64::INFINITY;
     config.climber.tumble = None;
     arena.add_fighter(config, nape + DVec3::Y * 2.5)?;
-    arena.add_fighter(
-        hero(),
-        DVec3::new(4.0, valley::height(4.0, 25.0) + 1.0, 25.0),
-    )?;
+    arena.add_fighter(hero(), in_front())?;
     let mut states = vec![arena.save()];
     for tick in 0..1200 {
         let pressed = if tick % 60 == 50 { STAB } else { 0 };
@@ -247,10 +215,7 @@ fn before_the_break(
         };
         arena.step(&[input, ClimberInput::IDLE], terrain)?;
         states.push(arena.save());
-        let broken = arena
-            .creature(giant)
-            .is_some_and(|giant| giant.state().plate(0) == 0);
-        if broken && states.len() > BACK {
+        if is_broken(&arena) && states.len() > BACK {
             let state = &states[states.len() - 1 - BACK / 2];
             arena.restore(state)?;
             return Ok(arena);
@@ -258,6 +223,12 @@ fn before_the_break(
     }
     let act = arena.fighter(FighterId(0)).map(|one| one.act().clone());
     Err(format!("no stab breaks the plate: {act:?}").into())
+}
+
+/// True if the giant's plate is broken.
+fn is_broken(arena: &Arena) -> bool {
+    let giant = arena.creature(CreatureId(0));
+    giant.is_some_and(|giant| giant.state().plate(0) == 0)
 }
 
 /// As [`measure`], `rounds` times from the same state. Fails if the plate does not break within the eight ticks.
@@ -271,22 +242,14 @@ fn measure_break(
     for _ in 0..rounds {
         arena.restore(&from)?;
         let times = measure(arena, terrain, 1, |_| ClimberInput::IDLE)?;
-        let broken = arena
-            .creature(CreatureId(0))
-            .is_some_and(|one| one.state().plate(0) == 0);
-        if !broken {
+        if !is_broken(arena) {
             return Err("the plate is whole after the eight ticks".into());
         }
         all.push(times);
     }
-    let median = |of: fn(&Times) -> f64| quantile(&mut all.iter().map(of).collect::<Vec<_>>(), 0.5);
-    Ok(Times {
-        tick: median(|times| times.tick),
-        save: median(|times| times.save),
-        load: median(|times| times.load),
-        fingerprint: median(|times| times.fingerprint),
-        rollback: median(|times| times.rollback),
-    })
+    let of = |operation: usize| all.iter().map(|times| times[operation]).collect();
+    let all: [Vec<f64>; 5] = std::array::from_fn(of);
+    Ok(all.map(|mut times| quantile(&mut times, 0.5)))
 }
 
 /// Adds rows for 64 climbers and four giants.
@@ -336,17 +299,11 @@ fn crowd(
             times.push(time);
         }
     }
-    let slow = quantile(&mut times, 0.99);
-    cells.value(
-        "64 climbers and 4 giants, a tick, us",
-        quantile(&mut times, 0.5),
-    );
+    let [usual, slow] = [0.5, 0.99].map(|part| quantile(&mut times, part));
+    cells.value("64 climbers and 4 giants, a tick, us", usual);
     cells.value("64 climbers and 4 giants, 99 % of ticks within, us", slow);
-    cells.push(
-        "64 climbers and 4 giants, 99 % of ticks / 60th of a second",
-        slow * 60e-6,
-        Bound::Most(0.5),
-    );
+    let name = "64 climbers and 4 giants, 99 % of ticks / 60th of a second";
+    cells.push(name, slow * 60e-6, Bound::Most(0.5));
     Ok(())
 }
 
@@ -404,15 +361,9 @@ fn arrows(
         }
     }
     let [without, with] = times.map(|mut times| quantile(&mut times, 0.5));
-    cells.push(
-        "500 arrows that stick, a tick more, us",
-        with - without,
-        Bound::Most(100.0),
-    );
-    cells.value(
-        "500 arrows that stick, a tick more / a tick",
-        (with - without) / tick,
-    );
+    let (name, more) = ("500 arrows that stick, a tick more", with - without);
+    cells.push(&format!("{name}, us"), more, Bound::Most(100.0));
+    cells.value(&format!("{name} / a tick"), more / tick);
     let lost = full
         .events()
         .iter()
@@ -431,12 +382,10 @@ fn rocks(
     cells: &mut Cells,
 ) -> Result<(), Failure> {
     let (mut arena, mut world) = (riders(kind)?, valley::world());
-    let mut debris = Debris::new(DebrisConfig::default());
-    for rock in scatter(&mut world, 24, 1, DVec3::new(0.0, 40.0, 0.0), 1.0) {
-        debris.add(rock, &mut world.bodies, &world.colliders)?;
-    }
+    let above = DVec3::new(0.0, 40.0, 0.0);
+    let mut rocks = FallingRocks::new(&mut world, 24, 1, above, 1.0)?;
     let dt = arena.config().tick;
-    let mut saved = DebrisSnapshot::save(&world, &debris);
+    let mut saved = DebrisSnapshot::save(&world, &rocks.debris);
     let mut all: [Vec<f64>; 3] = Default::default();
     for round in 0..60 + rounds {
         let poses = BodyPoses::default();
@@ -444,22 +393,14 @@ fn rocks(
         let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &among)];
         arena.step(&[GRIP, ClimberInput::IDLE], &terrain)?;
         let skin = arena.creature(CreatureId(0)).ok_or("no giant")?.surface();
-        let surfaces = [(creature_obstacle(CreatureId(0)), skin)];
-        let stepped = timed(|| {
-            debris.before_step(&surfaces, &mut world.bodies, &mut world.colliders, dt)?;
-            world.step_with_events(&debris, &());
-            let (broad, narrow) = (&world.broad_phase, &world.narrow_phase);
-            let (bodies, colliders) = (&mut world.bodies, &world.colliders);
-            Ok(debris
-                .after_step(&surfaces, bodies, colliders, broad, narrow, dt)
-                .map(drop)?)
-        })?;
+        let skin = (creature_obstacle(CreatureId(0)), skin);
+        let stepped = timed(|| Ok(rocks.step(skin, &mut world, dt).map(drop)?))?;
         let save = timed(|| {
-            saved = DebrisSnapshot::save(&world, &debris);
+            saved = DebrisSnapshot::save(&world, &rocks.debris);
             Ok(())
         })?;
         let load = timed(|| {
-            saved.restore(&mut world, &mut debris);
+            saved.restore(&mut world, &mut rocks.debris);
             Ok(())
         })?;
         if round >= 60 {

@@ -13,7 +13,6 @@
 use std::error::Error;
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::Instant;
 
 use clamber::mesh::TriangleId;
 use clamber::rig::{Palette, Playback};
@@ -22,7 +21,7 @@ use clamber::world::{BodyPoses, MaterialPoint, Obstacle, RapierTerrain, WorldCap
 use clamber_colossus::{
     Brain, Creature, CreatureConfig, CreatureKind, Person, Riding, Surroundings,
 };
-use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+use clamber_scenes::measure::{Bound, Cells, exit_code, is_brief, mean_us, quantile};
 use clamber_scenes::{giant, valley};
 use glam::DVec3;
 
@@ -53,13 +52,7 @@ const LIVES: [(&str, &str); 4] = [
 ];
 
 fn main() -> ExitCode {
-    match run(is_brief()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(is_brief()))
 }
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
@@ -82,10 +75,10 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     }
     let mut samplings = Vec::new();
     for _ in 0..if brief { 3 } else { 120 } {
-        samplings.push(timed(&mut sampling)?);
+        samplings.push(mean_us(TICKS, |_| sampling())?);
         for (_, life, steps, skins) in &mut lives {
-            steps.push(timed(|| life.step(&terrain))?);
-            skins.push(timed(|| life.pose_skin())?);
+            steps.push(mean_us(TICKS, |_| life.step(&terrain))?);
+            skins.push(mean_us(TICKS, |_| life.pose_skin())?);
         }
     }
     let sampling = quantile(&mut samplings, 0.5);
@@ -109,15 +102,6 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
         cells.push(&ratio, step / sampling, Bound::Most(most));
     }
     cells.finish("colossus", brief)
-}
-
-/// Runs [`TICKS`] ticks; returns the mean time of a tick, microseconds.
-fn timed(mut tick: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
-    let start = Instant::now();
-    for _ in 0..TICKS {
-        tick()?;
-    }
-    Ok(start.elapsed().as_secs_f64() * 1e6 / f64::from(TICKS))
 }
 
 /// A giant, the people around it, and a second skin that is posed with its palettes.

@@ -26,7 +26,7 @@ use clamber_navigation::{
     Airborne, Bot, BotConfig, ClimbGraph, Danger, Footing, Forecast, FutureSkin, GraphConfig,
     GraphOrigin, Start, View,
 };
-use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+use clamber_scenes::measure::{Bound, Cells, exit_code, is_brief, quantile};
 use clamber_scenes::{Creature, giant};
 use fastrand::Rng;
 use glam::DVec3;
@@ -46,13 +46,7 @@ const GIANT: ObstacleId = ObstacleId(1);
 type Failure = Box<dyn Error>;
 
 fn main() -> ExitCode {
-    match run(is_brief()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(is_brief()))
 }
 
 fn run(brief: bool) -> Result<(), Failure> {
@@ -104,10 +98,7 @@ fn plans(
     cells: &mut Cells,
 ) -> Result<(), Failure> {
     let (place, _) = creature.standing(HEIGHT)?;
-    let palette = creature
-        .rig
-        .skeleton
-        .palette(&creature.rig.skeleton.rest_pose())?;
+    let palette = creature.rest_palette()?;
     let forecast = Forecast::still()
         .then(graph, "idle", 0.0, 4.5)
         .then(graph, "shake", 0.0, 4.5);
@@ -166,9 +157,6 @@ fn climb(
     let (place, ground) = creature.standing(HEIGHT)?;
     let floor = HalfSpace::below(ground);
     let mut surface = SkinnedSurface::new(Arc::clone(&creature.rig.collider));
-    let mut pose = creature.rig.skeleton.rest_pose();
-    let idle = creature.rig.clips.iter().find(|clip| clip.name == "idle");
-    let idle = idle.ok_or("the giant has no clip idle")?;
     let top = (0..graph.patches().len()).zip(graph.reachable());
     let top = top.filter_map(|(patch, is_reachable)| is_reachable.then_some(patch));
     let height = |patch: &usize| graph.patches()[*patch].seat.y;
@@ -184,8 +172,7 @@ fn climb(
     let (mut thinks, mut steps) = (Vec::new(), Vec::new());
     for tick in 0..ticks {
         let seconds = f64::from(tick) * TICK;
-        idle.sample_into(seconds, Playback::Loop, &mut pose)?;
-        surface.advance(&creature.rig.skeleton.palette(&pose)?, place)?;
+        surface.advance(&creature.palette("idle", seconds)?, place)?;
         let view = View {
             seconds,
             climber: &climber,
@@ -232,11 +219,7 @@ fn climb(
 
 fn predictions(creature: &Creature, count: usize, cells: &mut Cells) -> Result<(), Failure> {
     let (place, _) = creature.standing(HEIGHT)?;
-    let clip = creature
-        .rig
-        .clips
-        .iter()
-        .find(|clip| clip.name == "breathe");
+    let clip = creature.rig.clip("breathe");
     let clip = clip.ok_or("the giant has no clip breathe")?;
     let mut pose = creature.rig.skeleton.rest_pose();
     let mut future = |seconds: f64, palette: &mut Palette| -> Option<Similarity> {
@@ -245,13 +228,7 @@ fn predictions(creature: &Creature, count: usize, cells: &mut Cells) -> Result<(
         Some(place)
     };
     let mut surface = SkinnedSurface::new(Arc::clone(&creature.rig.collider));
-    surface.place(
-        &creature
-            .rig
-            .skeleton
-            .palette(&creature.rig.skeleton.rest_pose())?,
-        place,
-    )?;
+    surface.place(&creature.rest_palette()?, place)?;
     let mut skin = FutureSkin::new(Arc::clone(&creature.rig.collider));
     let mut climber = Climber::new(
         ClimberConfig::colossus_climber(),

@@ -15,7 +15,7 @@ use std::time::Instant;
 
 use clamber::world::rapier3d::prelude::*;
 use clamber::world::{BodyPoses, ClimberProxy, ProxyBody, WorldCapsule};
-use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+use clamber_scenes::measure::{Bound, Cells, exit_code, is_brief, quantile};
 use glam::DVec3;
 
 /// Number of falling crates, in eight layers of 25.
@@ -28,13 +28,7 @@ const CLIMBERS: usize = 8;
 const TICK: f64 = 1.0 / 60.0;
 
 fn main() -> ExitCode {
-    match run(is_brief()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(is_brief()))
 }
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {

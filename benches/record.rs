@@ -15,16 +15,10 @@ use std::time::Instant;
 use clamber::record::{RecordOptions, Recorder, RecordingInfo, TickView};
 use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder, TICK};
 use clamber_scenes::giant::giant;
-use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+use clamber_scenes::measure::{Bound, Cells, exit_code, is_brief, quantile};
 
 fn main() -> ExitCode {
-    match run(is_brief()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(is_brief()))
 }
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
@@ -86,12 +80,10 @@ fn measure(
     }
     let (without, beside) = (tick_us(&plain), tick_us(&recorded));
     let recording = mean(&costs);
-    cells.value(&format!("{name}: a tick, us, mean"), without);
-    cells.value(
-        &format!("{name}: a recorded tick, us, mean"),
-        beside + recording,
-    );
-    cells.value(&format!("{name}: of that, recording"), recording);
+    let mut rows = cells.of(name);
+    rows.value("a tick, us, mean", without);
+    rows.value("a recorded tick, us, mean", beside + recording);
+    rows.value("of that, recording", recording);
     // Ticks are grouped by the rarest record that is due in them. A tick's time includes the more frequent records that
     // are due in it as well.
     let kinds = [
@@ -106,19 +98,14 @@ fn measure(
         });
         let mut due: Vec<f64> = due.map(|(_, cost)| *cost).collect();
         let median = quantile(&mut due, 0.5);
-        cells.value(&format!("{name}: recording, us, median, {what}"), median);
+        rows.value(&format!("recording, us, median, {what}"), median);
     }
     let written = writer_us(&recorded, &options, how, ticks)?;
-    let what = format!("{name}: writing the same tick repeatedly, us a tick");
-    cells.value(&what, written);
-    let share = Bound::Most(0.05);
-    cells.push(
-        &format!("{name}: recording / a tick"),
-        recording / without,
-        share,
-    );
+    rows.value("writing the same tick repeatedly, us a tick", written);
+    let share = recording / without;
+    rows.push("recording / a tick", share, Bound::Most(0.05));
     let minute = bytes * 3600.0 / ticks as f64 / 1e6;
-    cells.push(&format!("{name}: MB a minute"), minute, Bound::Most(50.0));
+    rows.push("MB a minute", minute, Bound::Most(50.0));
     Ok(())
 }
 
@@ -131,14 +118,14 @@ fn writer_us(
     ticks: u64,
 ) -> Result<f64, Box<dyn Error>> {
     let info = RecordingInfo {
-        creature: battle.creature().name.clone(),
+        creature: battle.creature.name.clone(),
         creature_fingerprint: 0,
         tick_seconds: TICK,
         climber: *battle.climber().config(),
         settings: options.to_settings(),
         version: RecordingInfo::VERSION.to_owned(),
     };
-    let skeleton = &battle.creature().rig.skeleton;
+    let skeleton = &battle.creature.rig.skeleton;
     let path = std::env::temp_dir().join(format!("clamber-writer-{}.mcap", std::process::id()));
     let mut recorder = Recorder::create(&path, &info, skeleton, how)?;
     let snapshot = battle.snapshot();
@@ -146,7 +133,7 @@ fn writer_us(
     for tick in 0..ticks {
         recorder.tick(&TickView {
             tick,
-            input: battle.input(),
+            input: &battle.input,
             state: battle.climber().state(),
             report: battle.report(),
             surface: battle.surface(),
@@ -167,7 +154,7 @@ fn writer_us(
 /// Mean time of a tick, microseconds: pose, climber and rocks.
 fn tick_us(battle: &Battle<'_>) -> f64 {
     let times: Vec<f64> = battle
-        .times()
+        .times
         .iter()
         .map(|[own, rocks]| own + rocks)
         .collect();

@@ -18,7 +18,7 @@ use clamber::render::{Frame, Gpu, Overlay, RenderError, Renderer};
 use clamber_scenes::Creature;
 use clamber_scenes::battle::{Battle, BattleOptions, TICK};
 use clamber_scenes::giant::{self, giant, giant_of};
-use clamber_scenes::measure::{Bound, Cells, is_brief, median_us, quantile};
+use clamber_scenes::measure::{Bound, Cells, exit_code, is_brief, median_us, quantile};
 use clamber_scenes::picture::{Stage, add_collider, add_visual, light, orbit};
 
 /// Width and height of a frame, pixels.
@@ -47,13 +47,7 @@ fn main() -> ExitCode {
         },
         each: Duration::from_millis(if brief { 20 } else { 2_000 }),
     };
-    match run(&effort) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(&effort))
 }
 
 /// True if a missing graphics adapter is a failure.
@@ -123,8 +117,9 @@ fn measure_frames(gpu: Gpu, effort: &Effort, cells: &mut Cells) -> Result<(), Bo
         renderer.gpu().wait()
     })?;
     let (read, _) = measure(&|renderer, frame| renderer.draw(frame).map(drop))?;
-    cells.value(&format!("{what}: frames a second, not read back"), left);
-    cells.value(&format!("{what}: frames a second, read back"), read);
+    let mut rows = cells.of(what);
+    rows.value("frames a second, not read back", left);
+    rows.value("frames a second, read back", read);
     cells.value("bytes uploaded for each of these frames", uploaded);
     Ok(())
 }
@@ -166,7 +161,9 @@ fn measure_skinning(
 ) -> Result<(), Box<dyn Error>> {
     let mesh = &creature.rig.collider;
     let name = format!("skinning {} vertices", mesh.positions().len());
-    let palettes = poses(creature)?;
+    // One second of the walk, tick by tick.
+    let palettes = (0..60).map(|tick| creature.palette("walk", f64::from(tick) / 60.0));
+    let palettes = palettes.collect::<Result<Vec<_>, _>>()?;
     let mut turn = palettes.iter().cycle();
     let mut next = || turn.next().unwrap_or(&palettes[0]);
 
@@ -199,21 +196,10 @@ fn measure_skinning(
         keep(posed.map(drop).map_err(Into::into));
     });
     failure?;
-    cells.value(&format!("{name}: skin_all, us"), here);
-    cells.value(&format!("{name}: on the device, us"), there);
-    cells.value(&format!("{name}: on the device and read back, us"), read);
-    cells.value(&format!("{name}: skin_all / on the device"), here / there);
+    let mut rows = cells.of(name);
+    rows.value("skin_all, us", here);
+    rows.value("on the device, us", there);
+    rows.value("on the device and read back, us", read);
+    rows.value("skin_all / on the device", here / there);
     Ok(())
-}
-
-/// The palettes of one second of the walk, tick by tick.
-fn poses(creature: &Creature) -> Result<Vec<Palette>, Box<dyn Error>> {
-    let walk = creature.clip_like(&["walk"]);
-    let walk = walk.ok_or("the giant cannot walk")?;
-    let rest = creature.rig.skeleton.rest_pose();
-    let pose = |tick: u32| -> Result<Palette, Box<dyn Error>> {
-        let pose = walk.sample(&rest, f64::from(tick) / 60.0, Playback::Loop)?;
-        Ok(creature.rig.skeleton.palette(&pose)?)
-    };
-    (0..60).map(pose).collect()
 }

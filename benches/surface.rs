@@ -13,7 +13,7 @@ use clamber::mesh::VertexId;
 use clamber::prelude::*;
 use clamber_scenes::Creature;
 use clamber_scenes::giant::{giant, giant_of};
-use clamber_scenes::measure::is_brief;
+use clamber_scenes::measure::{exit_code, is_brief};
 use criterion::Criterion;
 use glam::Vec3;
 
@@ -21,14 +21,7 @@ use glam::Vec3;
 const LARGE: usize = 100_000;
 
 fn main() -> ExitCode {
-    let brief = is_brief();
-    match run(brief) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(is_brief()))
 }
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
@@ -51,7 +44,9 @@ type Operation<'a> = (&'a str, Box<dyn FnMut(&SkinnedSurface) + 'a>);
 fn measure(criterion: &mut Criterion, creature: &Creature) -> Result<(), Box<dyn Error>> {
     let mesh = &creature.rig.collider;
     let mut surface = SkinnedSurface::new(mesh.clone());
-    let poses = poses(creature)?;
+    // One second of the walk, tick by tick.
+    let poses = (0..60).map(|tick| creature.palette("walk", f64::from(tick) / 60.0));
+    let poses = poses.collect::<Result<Vec<_>, _>>()?;
     surface.place(&poses[0], Similarity::IDENTITY)?;
     let mut group = criterion.benchmark_group(format!("giant, {}", mesh.positions().len()));
 
@@ -86,18 +81,6 @@ fn measure(criterion: &mut Criterion, creature: &Creature) -> Result<(), Box<dyn
     });
     group.finish();
     Ok(())
-}
-
-/// The palettes of one second of the walk, tick by tick.
-fn poses(creature: &Creature) -> Result<Vec<Palette>, Box<dyn Error>> {
-    let walk = creature.rig.clips.iter().find(|clip| clip.name == "walk");
-    let walk = walk.ok_or("the giant cannot walk")?;
-    let rest = creature.rig.skeleton.rest_pose();
-    let pose = |tick: u32| -> Result<Palette, Box<dyn Error>> {
-        let pose = walk.sample(&rest, f64::from(tick) / 60.0, Playback::Loop)?;
-        Ok(creature.rig.skeleton.palette(&pose)?)
-    };
-    (0..60).map(pose).collect()
 }
 
 /// All operations, with queries around the head.

@@ -17,7 +17,8 @@ use clamber::render::{
     Camera, Drawn, Frame, Gpu, Image, Light, Overlay, RenderMeshId, Renderer, TextSize,
 };
 use clamber_scenes::bodies::{self, Mount, Scene, Stage};
-use clamber_scenes::{Creature, giant, picture};
+use clamber_scenes::measure::exit_code;
+use clamber_scenes::{giant, picture};
 use clap::Parser;
 
 /// Draws contact sheets of a climber's body.
@@ -80,7 +81,7 @@ fn figure(file: Option<&Path>) -> Result<(Figure, Model), Box<dyn Error>> {
 }
 
 fn scenes() -> Result<Vec<Scene>, Box<dyn Error>> {
-    let giant: Creature = giant::giant()?;
+    let giant = giant::giant()?;
     let on = |height: f64, from: DVec3| Mount {
         clip: "walk",
         height,
@@ -113,13 +114,7 @@ fn scenes() -> Result<Vec<Scene>, Box<dyn Error>> {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(&Options::parse()))
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
@@ -150,20 +145,16 @@ fn sheet(
     let mut stage = Stage::new(scene)?;
     let mut things = Vec::new();
     for surface in &stage.surfaces {
-        things.push(picture::add_collider(
-            &mut renderer,
-            surface.mesh(),
-            [0.34, 0.33, 0.30],
-        )?);
+        let color = [0.34, 0.33, 0.30];
+        things.push(picture::add_collider(&mut renderer, surface.mesh(), color)?);
     }
     let mut body = Body::new(figure);
     let columns = options.columns;
-    let all = Image {
+    let mut all = Image {
         width: columns * width,
         height: 2 * height,
         pixels: vec![0; (columns * width * 2 * height * 4) as usize],
     };
-    let mut all = all;
     let [from, to] = match options.between.as_deref() {
         Some([from, to]) => [*from, *to],
         _ => [0.0, scene.seconds.min(8.0)],
@@ -206,23 +197,19 @@ fn draw(
     } else {
         -ahead * 0.8 + left * 0.45 + up * 0.25
     };
-    let mut drawn: Vec<Drawn<'_>> = Vec::new();
-    let mut palettes = Vec::new();
-    for index in 0..things.len() {
-        palettes.push(stage.palette(index)?);
-    }
-    for ((mesh, surface), palette) in things.iter().zip(&stage.surfaces).zip(&palettes) {
-        drawn.push(Drawn {
+    let palettes = (0..things.len()).map(|index| stage.palette(index));
+    let palettes = palettes.collect::<Result<Vec<_>, _>>()?;
+    let places = stage.surfaces.iter().map(|one| *one.world_from_model());
+    let things = things.iter().zip(places).zip(&palettes);
+    let things = things.map(|((mesh, place), palette)| (mesh, place, palette));
+    let person = person.iter().map(|mesh| (mesh, world, &palette));
+    let drawn = things
+        .chain(person)
+        .map(|(mesh, world_from_model, palette)| Drawn {
             mesh: *mesh,
-            world_from_model: *surface.world_from_model(),
+            world_from_model,
             palette: Some(palette),
         });
-    }
-    drawn.extend(person.iter().map(|mesh| Drawn {
-        mesh: *mesh,
-        world_from_model: world,
-        palette: Some(&palette),
-    }));
     let time = format!("{:.2} {:?}", stage.time, state.mode);
     let mut image = renderer.draw(&Frame {
         camera: Camera::new(middle + away.normalize() * 2.9, middle),
@@ -230,7 +217,7 @@ fn draw(
             shadow_radius: 4.0,
             ..Light::over(middle, 4.0)
         },
-        drawn,
+        drawn: drawn.collect(),
         overlay: Overlay::default(),
     })?;
     image.text([4, 2], TextSize::Small, &time);

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clamber_scenes::battle::{Battle, BattleOptions, Check, SceneError, Watch, positive};
+use clamber_scenes::measure::checked;
 use clamber_scenes::{Creature, test_data};
 use clap::Parser;
 
@@ -42,14 +43,12 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    let options = Options::parse();
-    let files = match test_data::models_or(&options.models) {
-        Ok(files) => files,
-        Err(error) => {
-            eprintln!("rides: {error}");
-            return ExitCode::from(2);
-        }
-    };
+    checked("rides", run(&Options::parse()))
+}
+
+/// Rides all models and prints the table; true if no model that can be loaded fails a check.
+fn run(options: &Options) -> Result<bool, SceneError> {
+    let files = test_data::models_or(&options.models)?;
     println!(
         "| model | riding | standing | falls | drift, mm | pushed off, mm | stands off, mm | inside | rocks inside | \
          rocks left | |\n|---|---|---|---|---|---|---|---|---|---|---|"
@@ -57,7 +56,7 @@ fn main() -> ExitCode {
     let (mut ridden, mut held, mut causes) = (0, 0, String::new());
     for file in &files {
         let model = file.file_stem().unwrap_or_default().to_string_lossy();
-        match ride(file, &options) {
+        match ride(file, options) {
             Err(error) => println!("| {model} | | | | | | | | | | refused: {error} |"),
             Ok((cells, failed)) => {
                 let names: Vec<&str> = failed.iter().map(|check| check.name).collect();
@@ -76,7 +75,7 @@ fn main() -> ExitCode {
         }
     }
     println!("\n{held} of {ridden} models pass all checks\n\n{causes}");
-    ExitCode::from(u8::from(held < ridden || ridden == 0))
+    Ok(held == ridden && ridden > 0)
 }
 
 /// Rides a model. Returns its cells of the table, and the checks that fail.
@@ -107,7 +106,7 @@ fn ride(file: &Path, options: &Options) -> Result<(String, Vec<Check>), SceneErr
         watch.stands_off * 1e3,
         watch.inside,
         watch.rocks_inside,
-        battle.rocks().left,
+        battle.rocks.left,
     );
     Ok((cells, checks))
 }

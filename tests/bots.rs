@@ -2,8 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 
+#[path = "../examples/climbs/bot.rs"]
+mod bot;
+
+use bot::{ClimbOptions, Climbed, climb_by};
 use clamber::climber::ClimberConfig;
-use clamber_scenes::climbs::{ClimbOptions, Climbed, climb_by};
 use clamber_scenes::giant;
 
 /// Largest ratio of the bot's time to the least time.
@@ -12,12 +15,12 @@ const MOST: f64 = 1.3;
 /// Climbs a giant with a climber, both scaled by `size`. Times scale with √size.
 fn climb(size: f64, height: f64, rate: f64) -> Climbed {
     let root = size.sqrt();
-    let usual = ClimbOptions::default();
     let options = ClimbOptions {
         height: height * size,
         rate: rate / root,
-        seconds: usual.seconds * root,
-        ..usual
+        seconds: 120.0 * root,
+        moving: false,
+        forecast: false,
     };
     let climber = ClimberConfig::colossus_climber().scaled(size);
     let climbed = climb_by(climber, &giant::giant().unwrap(), &options).unwrap();

@@ -82,39 +82,24 @@ fn the_file_has_the_expected_joints_meshes_clips_weak_points_and_tags() {
         assert_eq!(seen.normals.len(), seen.positions.len());
         assert_eq!(seen.tex_coords[0].len(), seen.positions.len());
     }
-    let clips: Vec<&str> = model
-        .rig
-        .clips
-        .iter()
-        .map(|clip| clip.name.as_str())
-        .collect();
+    let clips = model.rig.clips.iter().map(|clip| clip.name.as_str());
+    let clips: Vec<&str> = clips.collect();
     for name in ["idle", "walk", "shake", "swipe", "stomp", "stagger", "die"] {
         assert!(clips.contains(&name), "{name} of {clips:?}");
     }
     assert_eq!(clips.len(), 26, "{clips:?}");
     assert_eq!(model.rig.weak_points.len(), 3);
-    let major: Vec<_> = model
-        .rig
-        .weak_points
-        .iter()
-        .filter(|point| point.major)
-        .collect();
+    let points = model.rig.weak_points.iter();
+    let major: Vec<_> = points.filter(|point| point.major).collect();
     assert_eq!(major.len(), 1);
     let joint = &model.rig.skeleton.joints()[major[0].joint.0 as usize];
     assert!(joint.name.to_lowercase().contains("head"), "{}", joint.name);
     let tags = model.rig.collider.tags();
     let has = |kind| tags.contains(&SurfaceTag::new(kind));
     assert!(has(SurfaceKind::Fur) && has(SurfaceKind::Stone) && has(SurfaceKind::Skin));
-    assert!(
-        model.report.warnings.is_empty(),
-        "{:?}",
-        model.report.warnings
-    );
-    assert!(
-        model.report.build.worst_weight_error < 1e-5,
-        "{:?}",
-        model.report.build
-    );
+    let (warnings, build) = (&model.report.warnings, &model.report.build);
+    assert!(warnings.is_empty(), "{warnings:?}");
+    assert!(build.worst_weight_error < 1e-5, "{build:?}");
     let (low, high) = heights(model.rig.collider.positions());
     assert!(
         (36.0..44.0).contains(&(high - low)) && low.abs() < 0.5,
@@ -127,21 +112,18 @@ fn its_collision_mesh_is_closed_and_faces_outwards() {
     let model = model();
     assert_eq!(model.report.build.cracks, 0);
     assert_eq!(flaws(&model.rig.collider), Flaws::default());
-    assert!(
-        volume(&model.rig.collider) > 1_000.0,
-        "{} m^3",
-        volume(&model.rig.collider)
-    );
+    let volume = volume(&model.rig.collider);
+    assert!(volume > 1_000.0, "{volume} m^3");
 }
 
 #[test]
 fn ledges_are_level_and_wide_enough_to_stand_on() {
     let model = model();
     let mut area = 0.0;
-    let collider = &model.rig.collider;
+    let mesh = &model.rig.collider;
     for triangle in &model.rig.collider_materials["stone_ledge"] {
-        let corners = collider.triangles()[triangle.index()];
-        let [a, b, c] = corners.map(|v| collider.positions()[v.index()].as_dvec3());
+        let corners = mesh.triangles()[triangle.index()];
+        let [a, b, c] = corners.map(|v| mesh.positions()[v.index()].as_dvec3());
         let normal = (b - a).cross(c - a);
         if normal.y > 0.98 * normal.length() {
             area += normal.length() * 0.5;
@@ -176,16 +158,9 @@ fn loops_close_and_no_clip_sinks_into_the_ground() {
             let palette = model.rig.skeleton.palette(&pose).unwrap();
             surface.advance(&palette, Similarity::IDENTITY).unwrap();
             let (low, high) = heights(&positions_of(&surface));
-            assert!(
-                low > -0.75,
-                "{} at {time:.2} s reaches down to {low} m",
-                clip.name
-            );
-            assert!(
-                low < 0.75 && high < 48.0,
-                "{} at {time:.2} s: {low} to {high} m",
-                clip.name
-            );
+            let told = format!("{} at {time:.2} s: {low} to {high} m", clip.name);
+            assert!(low > -0.75, "{told}");
+            assert!(low < 0.75 && high < 48.0, "{told}");
         }
     }
 }

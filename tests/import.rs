@@ -119,17 +119,13 @@ fn fixtures_show_the_features_that_they_are_made_for() {
     assert_eq!(sparse.rig.collider.triangles().len(), 12);
     // Some of its nodes mirror.
     let mirrored = load(fixtures.join("unavi-xyz+gltf_kun/NegativeScaleTest.glb")).unwrap();
-    let palette = mirrored
-        .rig
-        .skeleton
-        .palette(&mirrored.rig.skeleton.rest_pose())
-        .unwrap();
-    let flipped = palette
-        .matrices()
-        .iter()
-        .filter(|m| m.is_mirrored())
-        .count();
-    assert!(flipped > 0);
+    let palette = rest_palette(&mirrored);
+    assert!(palette.matrices().iter().any(|m| m.is_mirrored()));
+}
+
+fn rest_palette(model: &Model) -> Palette {
+    let skeleton = &model.rig.skeleton;
+    skeleton.palette(&skeleton.rest_pose()).unwrap()
 }
 
 /// Areas of a rig's triangles at rest.
@@ -148,11 +144,7 @@ fn at_rest_a_man_stands_upright() {
         return;
     };
     let model = load(&path).unwrap();
-    let palette = model
-        .rig
-        .skeleton
-        .palette(&model.rig.skeleton.rest_pose())
-        .unwrap();
+    let palette = rest_palette(&model);
     let mut surface = SkinnedSurface::new(model.rig.collider.clone());
     surface.place(&palette, Similarity::IDENTITY).unwrap();
     let mut positions = Vec::new();
@@ -261,11 +253,7 @@ fn two_triangles() -> String {
 /// same.
 fn users_found(options: &LoadOptions) -> [u32; 2] {
     let model = load_slice(two_triangles().as_bytes(), options).unwrap();
-    let palette = model
-        .rig
-        .skeleton
-        .palette(&model.rig.skeleton.rest_pose())
-        .unwrap();
+    let palette = rest_palette(&model);
     let mut surface = SkinnedSurface::new(model.rig.collider.clone());
     surface.advance(&palette, Similarity::IDENTITY).unwrap();
     [(2.0, -1.0), (-1.0, 1.0)].map(|(y, down)| {

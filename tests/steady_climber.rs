@@ -98,7 +98,7 @@ fn climbing_up_and_across_the_walking_giant_allocates_nothing() {
     ];
     for (told, way) in ways {
         let mut stage = Stage::new(&creature, (20.0, 1.0), Walks::Walk).unwrap();
-        let (foot, normal) = stage.vertex(route.waypoints[route.waypoints.len() / 2]);
+        let (foot, normal) = stage.vertex(route[route.len() / 2]);
         let mut climber = Climber::new(long_climber(), foot + normal * 0.45).unwrap();
         let mut ticks = Ticks::default();
         for tick in 1..=600 {
@@ -146,7 +146,7 @@ fn hanging_from_the_giant_allocates_nothing() {
     let creature = giant::giant().unwrap();
     let route = Ways::new(&creature).unwrap().climb(16).unwrap();
     let mut stage = Stage::new(&creature, (20.0, 1.0), Walks::Walk).unwrap();
-    let (point, normal) = stage.vertex(route.waypoints[route.waypoints.len() / 2]);
+    let (point, normal) = stage.vertex(route[route.len() / 2]);
     let mut config = long_climber();
     // The climber hangs from every hold.
     config.grip = config.grip.map(|grip| GripConfig {

@@ -45,14 +45,8 @@ const COUNTED: usize = 12;
 impl Scene {
     fn new() -> Self {
         let creature = giant::giant().unwrap();
-        let walk = creature.clip_like(&["walk"]).unwrap();
-        let rest = creature.rig.skeleton.rest_pose();
-        let palettes = (0..WARM + COUNTED).map(|tick| {
-            let time = tick as f64 / 60.0;
-            let pose = walk.sample(&rest, time, Playback::Loop).unwrap();
-            creature.rig.skeleton.palette(&pose).unwrap()
-        });
-        let palettes = palettes.collect();
+        let palette = |tick: usize| creature.palette("walk", tick as f64 / 60.0).unwrap();
+        let palettes = (0..WARM + COUNTED).map(palette).collect();
         let surface = SkinnedSurface::new(creature.rig.collider.clone());
         let triangles = creature.rig.collider.triangles().len() as u32;
         let anchors = (0..triangles).step_by(4_000);

@@ -40,11 +40,8 @@ impl Play<'_> {
         let mut pose = self.creature.rig.skeleton.rest_pose();
         let time = self.from + self.speed * seconds;
         clip.sample_into(time, Playback::Clamp, &mut pose).ok()?;
-        self.creature
-            .rig
-            .skeleton
-            .palette_into(&pose, palette)
-            .ok()?;
+        let skeleton = &self.creature.rig.skeleton;
+        skeleton.palette_into(&pose, palette).ok()?;
         Some(self.place)
     }
 }

@@ -5,8 +5,9 @@
     reason = "a test's helpers may fail like the test"
 )]
 
+use clamber::mesh::VertexId;
 use clamber::prelude::*;
-use clamber_scenes::climbs::{Motion, RATE, Route, Stage, Ways, long_climber};
+use clamber_scenes::climbs::{Motion, RATE, Stage, Ways, long_climber};
 use clamber_scenes::{Creature, giant, test_data};
 use glam::DVec3;
 
@@ -41,30 +42,28 @@ struct Outcome {
 }
 
 /// Climbs along a route. The climber may grip all of the creature, as if it were all fur.
-fn tour(stage: &mut Stage<'_>, route: &Route) -> Outcome {
+fn tour(stage: &mut Stage<'_>, route: &[VertexId]) -> Outcome {
     let mut outcome = Outcome::default();
-    let waypoints = &route.waypoints;
     let (mut next, mut climber) = on_the_route(stage, route);
     let mut since = 0.0;
     for tick in 1..=(LIMIT * RATE) as u32 {
         let time = f64::from(tick) / RATE;
         stage.advance(time).unwrap();
         let position = climber.state().position;
-        let is_reached =
-            |index: &usize| stage.vertex(waypoints[*index]).0.distance(position) < REACHED;
+        let is_reached = |index: &usize| stage.vertex(route[*index]).0.distance(position) < REACHED;
         // Any of the next few counts, since the climber cuts corners.
-        if let Some(reached) = (next..waypoints.len()).take(6).filter(is_reached).max() {
+        if let Some(reached) = (next..route.len()).take(6).filter(is_reached).max() {
             (next, since) = (reached + 1, time);
         } else if time - since > PATIENCE {
             (next, since) = (next + 1, time);
             outcome.skipped += 1;
         }
         outcome.seconds = time;
-        outcome.arrived = next == waypoints.len();
+        outcome.arrived = next == route.len();
         if outcome.arrived {
             break;
         }
-        let toward = stage.vertex(waypoints[next]).0 - position;
+        let toward = stage.vertex(route[next]).0 - position;
         let input = ClimberInput {
             climb: toward.normalize_or(DVec3::Y),
             grip: true,
@@ -91,10 +90,10 @@ fn tour(stage: &mut Stage<'_>, route: &Route) -> Outcome {
 }
 
 /// The first waypoint with room for a climber, and a climber there. The route may begin in a crease.
-fn on_the_route(stage: &Stage<'_>, route: &Route) -> (usize, Climber) {
+fn on_the_route(stage: &Stage<'_>, route: &[VertexId]) -> (usize, Climber) {
     let config = long_climber();
     let radius = config.body.radius;
-    let places = route.waypoints.iter().map(|vertex| {
+    let places = route.iter().map(|vertex| {
         let (point, normal) = stage.vertex(*vertex);
         point + normal * (radius + 0.05)
     });

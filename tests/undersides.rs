@@ -33,7 +33,7 @@ const BACK: f64 = 1e-3;
 const RADIUS: f64 = 0.4;
 
 fn pose(rig: &Rig, clip: &str, time: f64) -> Palette {
-    let clip = rig.clips.iter().find(|one| one.name == clip).unwrap();
+    let clip = rig.clip(clip).unwrap();
     let rest = rig.skeleton.rest_pose();
     let pose = clip.sample(&rest, time, Playback::Loop).unwrap();
     rig.skeleton.palette(&pose).unwrap()

@@ -70,23 +70,19 @@ pub(crate) fn compare(
         let hard = alone(&frames, figure, 1.0)?;
         let soft = alone(&frames, figure, 0.97)?;
         for (method, mut shown) in names.iter().zip([hard, soft, ours]) {
-            let name = format!("{}, {method}", climb.name);
-            let micros = quantile(&mut shown.micros, 0.5);
-            cells.value(&format!("{name}: us a frame"), micros);
+            let mut rows = cells.of(format!("{}, {method}", climb.name));
+            rows.value("us a frame", quantile(&mut shown.micros, 0.5));
             for (part, errors) in ["hands", "feet"].iter().zip(&mut shown.errors) {
                 if errors.is_empty() {
                     continue;
                 }
                 for (what, share) in [("median", 0.5), ("99th percentile", 0.99)] {
                     let error = quantile(errors, share) * 1e3;
-                    cells.value(
-                        &format!("{name}: {part} off their holds, {what}, mm"),
-                        error,
-                    );
+                    rows.value(&format!("{part} off their holds, {what}, mm"), error);
                 }
             }
             let rate = quantile(&mut shown.rates, 0.999);
-            cells.value(&format!("{name}: elbows and knees, 99.9 %, rad/s"), rate);
+            rows.value("elbows and knees, 99.9 %, rad/s", rate);
         }
     }
     Ok(())

@@ -22,20 +22,14 @@ use clamber::body::{Body, BodyInput, Extremity, Figure, Humanoid, Side};
 use clamber::rig::{Palette, Playback};
 use clamber_scenes::bodies::{self, Mount, Scene, Stage};
 use clamber_scenes::giant;
-use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+use clamber_scenes::measure::{Bound, Cells, exit_code, is_brief, mean_us, quantile};
 use glam::DVec3;
 
 /// Length of a tick and of a frame, seconds.
 const DT: f64 = 1.0 / 60.0;
 
 fn main() -> ExitCode {
-    match run(is_brief()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(is_brief()))
 }
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
@@ -64,24 +58,18 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     cells.value("one clip sampled and its palette composed, us", sampling);
     for scene in &scenes {
         let mut seen = play(scene, &figure, if brief { 120 } else { 3600 })?;
-        let name = &scene.name;
-        let micros = quantile(&mut seen.micros, 0.5);
-        cells.value(&format!("{name}: a frame of the body, us"), micros);
+        let mut rows = cells.of(&scene.name);
+        rows.value("a frame of the body, us", quantile(&mut seen.micros, 0.5));
         if !seen.slips.is_empty() {
             let p99 = quantile(&mut seen.slips, 0.99) * 100.0;
-            let what = format!("{name}: feet slide, 99th percentile, cm/s");
-            cells.push(&what, p99, Bound::Most(5.0));
+            let what = "feet slide, 99th percentile, cm/s";
+            rows.push(what, p99, Bound::Most(5.0));
         }
         if !seen.palms.is_empty() {
-            let p99 = quantile(&mut seen.palms, 0.99) * 1000.0;
-            let what = format!("{name}: palms from their holds, 99th percentile, mm");
-            cells.push(&what, p99, Bound::Most(2.0));
-            let most = quantile(&mut seen.palms, 1.0) * 1000.0;
-            cells.push(
-                &format!("{name}: palms from their holds, most, mm"),
-                most,
-                Bound::Most(10.0),
-            );
+            let [p99, most] = [0.99, 1.0].map(|part| quantile(&mut seen.palms, part) * 1000.0);
+            let what = "palms from their holds, 99th percentile, mm";
+            rows.push(what, p99, Bound::Most(2.0));
+            rows.push("palms from their holds, most, mm", most, Bound::Most(10.0));
         }
     }
     let climbs = [
@@ -101,13 +89,11 @@ fn clip_and_palette(figure: &Figure, brief: bool) -> Result<f64, Box<dyn Error>>
     let (mut pose, mut palette) = (set.rest().clone(), Palette::default());
     let mut times = Vec::new();
     for round in 0..if brief { 3 } else { 300 } {
-        let start = Instant::now();
-        for frame in 0..100 {
+        times.push(mean_us(100, |frame| {
             let time = f64::from(round * 100 + frame) * DT;
             clip.sample_into(time, Playback::Loop, &mut pose)?;
-            figure.skeleton().palette_into(&pose, &mut palette)?;
-        }
-        times.push(start.elapsed().as_secs_f64() * 1e4);
+            Ok(figure.skeleton().palette_into(&pose, &mut palette)?)
+        })?);
     }
     Ok(quantile(&mut times, 0.5))
 }

@@ -17,9 +17,6 @@ use rayon::prelude::*;
 const DT: f64 = 1.0 / RATE;
 
 /// A rapier mesh of a surface's current skin, in world space.
-///
-/// # Errors
-/// parry's error, if it refuses the mesh.
 pub(crate) fn still_mesh(surface: &SkinnedSurface) -> Result<ColliderBuilder, Box<dyn Error>> {
     let mut positions = Vec::new();
     surface.skin_all(&mut positions);

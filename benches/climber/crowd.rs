@@ -2,20 +2,19 @@
 //! many of rapier's characters on giants that stand still.
 
 use std::error::Error;
-use std::sync::Arc;
 use std::time::Instant;
 
 use clamber::prelude::*;
-use clamber::rig::Pose;
 use clamber::world::rapier3d::prelude::PhysicsWorld;
 use clamber_scenes::climbs::{RATE, long_climber};
 use clamber_scenes::giant::giant_of;
 use clamber_scenes::measure::{Bound, Cells, quantile};
-use clamber_scenes::{Creature, valley};
+use clamber_scenes::valley;
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::characters::{Character, Characters, still_mesh};
+use super::herd::{Giant, Herd, Seat};
 
 /// Length of a tick, seconds.
 const DT: f64 = 1.0 / RATE;
@@ -63,18 +62,9 @@ const PARTS: [Part; 5] = [
 struct Rider {
     climber: Climber,
     part: Part,
-    giant: usize,
-    seat: Anchor,
+    seat: Seat,
     /// World-space direction of walking or climbing.
     direction: DVec3,
-}
-
-struct Giant {
-    surface: SkinnedSurface,
-    place: Similarity,
-    phase: f64,
-    pose: Pose,
-    palette: Palette,
 }
 
 /// Adds rows for `riders` climbers on `giants` giants of about `vertices` vertices each.
@@ -84,28 +74,24 @@ pub(crate) fn measure(
     cells: &mut Cells,
 ) -> Result<(), Box<dyn Error>> {
     let creature = giant_of(vertices)?;
-    let walk = creature
-        .clip_like(&["walk"])
-        .ok_or("the giant has no walk clip")?;
-    let mut giants = herd(&creature, giants, walk.duration());
-    // Posed twice: the first pose moves the giants from the origin to their places, at thousands of metres a second.
-    pose(&mut giants, &creature, walk, 0)?;
-    pose(&mut giants, &creature, walk, 0)?;
-    let mut riders = seated(&giants, riders)?;
+    let mut herd = Herd::new(&creature, giants, ROW, APART)?;
+    let mut riders = seated(&herd, riders)?;
     let world = valley::world();
     let two = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
-    let mut characters = Characters::new(beside(&giants, riders.len())?, (AWAY, GRAIN));
+    let mut characters = Characters::new(beside(&herd.giants, riders.len())?, (AWAY, GRAIN));
     let mut times: [Vec<f64>; 3] = Default::default();
     let (mut holding, mut standing, mut hanging) = (0, 0, 0);
     for tick in 0..SETTLE + ticks {
-        sit(&mut riders, &giants)?;
+        for rider in &mut riders {
+            herd.sit(&mut rider.climber, &rider.seat, AWAY)?;
+        }
         let before = BodyPoses::default();
         let terrain = RapierTerrain::of_world(&world, &before);
         let start = Instant::now();
-        two.install(|| pose(&mut giants, &creature, walk, tick + 1))?;
+        two.install(|| herd.pose_in_parallel(tick + 1))?;
         let posed = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        two.install(|| step(&mut riders, &giants, &terrain))?;
+        two.install(|| step(&mut riders, &herd.giants, &terrain))?;
         let stepped = start.elapsed().as_secs_f64();
         // Climbers and characters take turns of many ticks, so that each finds its own data in the caches.
         if (tick + 1).is_multiple_of(SETTLE) {
@@ -138,51 +124,27 @@ pub(crate) fn measure(
     if grounded < LEAST_BUSY {
         return Err("too many of rapier's characters fall".into());
     }
-    let name = |what: &str| {
-        format!(
-            "{} climbers on {} giants of {vertices} vertices: {what}",
-            riders.len(),
-            giants.len()
-        )
-    };
-    cells.value(
-        &name("standing or walking, %"),
-        100.0 * standing as f64 / all,
-    );
-    cells.value(
-        &name("holding on and climbing, %"),
-        100.0 * holding as f64 / all,
-    );
-    cells.value(&name("hanging, %"), 100.0 * hanging as f64 / all);
+    let climbers = riders.len();
+    let thing = format!("{climbers} climbers on {giants} giants of {vertices} vertices");
+    let mut rows = cells.of(thing);
+    rows.value("standing or walking, %", 100.0 * standing as f64 / all);
+    rows.value("holding on and climbing, %", 100.0 * holding as f64 / all);
+    rows.value("hanging, %", 100.0 * hanging as f64 / all);
     let [mut posed, mut stepped, mut others] = times;
     let mut whole: Vec<f64> = posed.iter().zip(&stepped).map(|(a, b)| a + b).collect();
-    cells.value(&name("poses on two cores, ms"), quantile(&mut posed, 0.5));
-    cells.value(
-        &name("climbers on two cores, ms"),
-        quantile(&mut stepped, 0.5),
-    );
+    rows.value("poses on two cores, ms", quantile(&mut posed, 0.5));
+    rows.value("climbers on two cores, ms", quantile(&mut stepped, 0.5));
     let mut of_60_hz = |part: f64| quantile(&mut whole, part) * 1e-3 * RATE;
-    cells.value(
-        &name("share of 60 Hz, the fastest tenth of ticks"),
-        of_60_hz(0.1),
-    );
-    let share = of_60_hz(0.5);
-    cells.push(
-        &name("share of 60 Hz on two cores"),
-        share,
-        Bound::Most(0.5),
-    );
+    let (fastest, share) = (of_60_hz(0.1), of_60_hz(0.5));
+    rows.value("share of 60 Hz, the fastest tenth of ticks", fastest);
+    rows.push("share of 60 Hz on two cores", share, Bound::Most(0.5));
     let controllers = quantile(&mut others, 0.5);
-    cells.value(
-        &name("as many of rapier's controllers on still meshes, ms"),
-        controllers,
-    );
-    cells.value(&name("ticks of those on the ground, %"), 100.0 * grounded);
-    cells.push(
-        &name("climbers and poses / rapier's controllers"),
-        quantile(&mut whole, 0.5) / controllers,
-        Bound::Most(0.15),
-    );
+    let what = "as many of rapier's controllers on still meshes, ms";
+    rows.value(what, controllers);
+    rows.value("ticks of those on the ground, %", 100.0 * grounded);
+    let ratio = quantile(&mut whole, 0.5) / controllers;
+    let what = "climbers and poses / rapier's controllers";
+    rows.push(what, ratio, Bound::Most(0.15));
     Ok(())
 }
 
@@ -216,85 +178,25 @@ fn beside(
     Ok((world, all))
 }
 
-fn herd(creature: &Creature, count: usize, period: f64) -> Vec<Giant> {
-    let mut rng = fastrand::Rng::with_seed(8);
-    let giant = |index: usize| {
-        let along = |step: usize| (step as f64 - 2.0) * APART;
-        let (x, z) = (along(index % ROW), along(index / ROW));
-        Giant {
-            surface: SkinnedSurface::new(Arc::clone(&creature.rig.collider)),
-            place: Similarity::from_translation(DVec3::new(x, valley::height(x, z), z)),
-            phase: rng.f64() * period,
-            pose: creature.rig.skeleton.rest_pose(),
-            palette: Palette::default(),
-        }
-    };
-    (0..count).map(giant).collect()
-}
-
-fn pose(giants: &mut [Giant], creature: &Creature, walk: &Clip, tick: usize) -> Result<(), String> {
-    giants.par_iter_mut().try_for_each(|giant| {
-        let time = giant.phase + tick as f64 * DT;
-        let posed = walk.sample_into(time, Playback::Loop, &mut giant.pose);
-        posed.map_err(|error| error.to_string())?;
-        let palette = creature
-            .rig
-            .skeleton
-            .palette_into(&giant.pose, &mut giant.palette);
-        palette.map_err(|error| error.to_string())?;
-        let advanced = giant.surface.advance(&giant.palette, giant.place);
-        advanced.map_err(|error| error.to_string())
-    })
-}
-
-fn seated(giants: &[Giant], count: usize) -> Result<Vec<Rider>, Box<dyn Error>> {
+fn seated(herd: &Herd, count: usize) -> Result<Vec<Rider>, Box<dyn Error>> {
     let mut rng = fastrand::Rng::with_seed(9);
     let mut riders = Vec::with_capacity(count);
     while riders.len() < count {
         // The riders of a giant are side by side in the list, so that threads share few giants.
-        let giant = riders.len() * giants.len() / count;
+        let giant = riders.len() * herd.giants.len() / count;
         let part = PARTS[riders.len() % PARTS.len()];
-        let surface = &giants[giant].surface;
-        let triangle = TriangleId(rng.u32(0..surface.mesh().triangles().len() as u32));
-        let seat = surface.anchor(triangle, [0.5, 0.25, 0.25])?;
-        let steep = f64::from(surface.in_model().motion(&seat, DT)?.normal.y);
+        let (seat, up) = herd.seat(giant, &mut rng)?;
         let direction = DVec3::new(rng.f64() - 0.5, rng.f64() - 0.5, rng.f64() - 0.5);
-        if part == Part::Climbs || steep > LEVEL {
+        if part == Part::Climbs || f64::from(up) > LEVEL {
             riders.push(Rider {
                 climber: Climber::new(long_climber(), DVec3::Y * 1e4)?,
                 part,
-                giant,
                 seat,
                 direction: direction.normalize_or(DVec3::Y),
             });
         }
     }
     Ok(riders)
-}
-
-/// Puts climbers that are more than [`AWAY`] from their seats back to a place just above the seats.
-fn sit(riders: &mut [Rider], giants: &[Giant]) -> Result<(), Box<dyn Error>> {
-    for rider in riders {
-        let surface = &giants[rider.giant].surface;
-        let motion = surface.in_model().motion(&rider.seat, DT)?;
-        let place = surface.world_from_model();
-        let normal = (place.rotation * motion.normal.as_dvec3()).normalize();
-        let point = place.transform_point_f32(motion.position);
-        let position = point + normal * (rider.climber.config().body.radius * 1.01);
-        let state = *rider.climber.state();
-        if state.position.distance(position) > AWAY {
-            rider.climber.restore(ClimberState {
-                position,
-                velocity: place.transform_vector(motion.velocity.as_dvec3()),
-                mode: ClimberMode::Falling,
-                support: None,
-                support_velocity: None,
-                stamina: 1.0,
-                ..state
-            })?;
-        }
-    }
-    Ok(())
 }
 
 fn step(riders: &mut [Rider], giants: &[Giant], terrain: &RapierTerrain<'_>) -> Result<(), String> {

@@ -21,6 +21,8 @@ mod characters;
 mod crowd;
 mod crushed;
 mod friends;
+#[path = "../scene/herd.rs"]
+mod herd;
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -31,7 +33,7 @@ use clamber::world::rapier3d::math::Vector;
 use clamber::world::rapier3d::prelude::PhysicsWorld;
 use clamber_scenes::climbs::{Motion as Walks, RATE, Stage, Ways, long_climber};
 use clamber_scenes::giant;
-use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+use clamber_scenes::measure::{Bound, Cells, exit_code, is_brief, quantile};
 use glam::DVec3;
 
 use characters::{Character, queries, still_mesh};
@@ -49,13 +51,7 @@ const GIANT: ObstacleId = ObstacleId(1);
 const SETTLE: u32 = 600;
 
 fn main() -> ExitCode {
-    match run(is_brief()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(is_brief()))
 }
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
@@ -83,16 +79,16 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let ways = Ways::new(&creature)?;
     let route = ways.climb(16).ok_or("found no way up the giant")?;
     stage.place(0.0)?;
-    let (foot, normal) = stage.vertex(route.waypoints[0]);
+    let (foot, normal) = stage.vertex(route[0]);
     let mut climbs = Climber::new(long_climber(), foot + normal * 0.45)?;
     let (mut next, mut made, mut climbed) = (0, 0.0, 0);
     for tick in 1..=ticks {
-        if next >= route.waypoints.len() {
+        if next >= route.len() {
             break;
         }
         climbed = tick;
         let position = climbs.state().position;
-        let target = stage.vertex(route.waypoints[next]).0;
+        let target = stage.vertex(route[next]).0;
         let toward = target - position;
         next += usize::from(toward.length() < 0.9 || tick % 240 == 0);
         let input = ClimberInput {

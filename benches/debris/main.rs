@@ -10,6 +10,8 @@
 //!
 //! Run it with `cargo bench -p clamber_benches --bench debris`; briefly with `-- --test`.
 
+#[path = "../../examples/rocks/scene.rs"]
+mod scene;
 mod whole;
 
 use std::error::Error;
@@ -17,9 +19,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clamber_scenes::giant::{giant, giant_of};
-use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
-use clamber_scenes::rocks::{Rocks, TICK};
+use clamber_scenes::measure::{Bound, Cells, exit_code, is_brief, quantile};
 
+use scene::{CREATURE, Rocks, TICK};
 use whole::Whole;
 
 /// Number of rocks in each world.
@@ -32,14 +34,7 @@ const FALL: u32 = 200;
 const COUNTED: u32 = 200;
 
 fn main() -> ExitCode {
-    let brief = is_brief();
-    match run(brief) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(is_brief()))
 }
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
@@ -72,17 +67,18 @@ fn measure(size: Option<usize>, brief: bool, cells: &mut Cells) -> Result<(), Bo
         let start = Instant::now();
         let since = |start: Instant| start.elapsed().as_secs_f64() * 1e6;
         ours.pose()?;
-        ours.bring_skin()?;
+        let skin = (CREATURE, &ours.surface);
+        ours.rocks.before_step(skin, &mut ours.world, TICK)?;
         let brought = since(start);
-        ours.step_world();
+        ours.world.step_with_events(&ours.rocks.debris, &());
         let stepped = since(start);
-        let report = ours.keep_out()?;
+        let report = ours.rocks.after_step(skin, &mut ours.world, TICK)?;
         let by_patches = since(start);
         let start = Instant::now();
         let skin = whole.step()?;
         let by_whole = start.elapsed().as_secs_f64() * 1e6;
         let start = Instant::now();
-        alone.step_world();
+        alone.world.step_with_events(&alone.rocks.debris, &());
         let by_none = start.elapsed().as_secs_f64() * 1e6;
         if tick >= fall {
             times[0].push(by_patches);
@@ -98,28 +94,18 @@ fn measure(size: Option<usize>, brief: bool, cells: &mut Cells) -> Result<(), Bo
     println!("{name}: {} rocks near the skin", near / counted);
     let [by_patches, by_whole, skin, brought, stepped, kept, alone] =
         times.map(|mut times| quantile(&mut times, 0.5));
-    cells.value(
-        &format!("{name}: debris, us a tick of {TICK:.4} s"),
-        by_patches,
-    );
-    cells.value(&format!("{name}: of that, adding skin to rapier"), brought);
-    cells.value(&format!("{name}: of that, rapier's step"), stepped);
-    cells.value(&format!("{name}: of that, putting rocks back"), kept);
-    cells.value(&format!("{name}: whole mesh, us a tick"), by_whole);
-    cells.value(&format!("{name}: of that, setting the mesh"), skin);
-    cells.value(&format!("{name}: rocks without a giant, us a tick"), alone);
-    cells.value(
-        &format!("{name}: debris / whole mesh"),
-        by_patches / by_whole,
-    );
-    let most = match size {
-        None => Bound::Most(0.4),
-        Some(_) => Bound::Most(0.15),
-    };
-    cells.push(
-        &format!("{name}: debris / whole mesh, rocks without a giant taken off both"),
-        (by_patches - alone) / (by_whole - alone),
-        most,
-    );
+    let mut rows = cells.of(name);
+    rows.value(&format!("debris, us a tick of {TICK:.4} s"), by_patches);
+    rows.value("of that, adding skin to rapier", brought);
+    rows.value("of that, rapier's step", stepped);
+    rows.value("of that, putting rocks back", kept);
+    rows.value("whole mesh, us a tick", by_whole);
+    rows.value("of that, setting the mesh", skin);
+    rows.value("rocks without a giant, us a tick", alone);
+    rows.value("debris / whole mesh", by_patches / by_whole);
+    let what = "debris / whole mesh, rocks without a giant taken off both";
+    let most = if size.is_none() { 0.4 } else { 0.15 };
+    let ratio = (by_patches - alone) / (by_whole - alone);
+    rows.push(what, ratio, Bound::Most(most));
     Ok(())
 }

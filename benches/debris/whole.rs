@@ -4,8 +4,9 @@ use std::error::Error;
 use std::time::Instant;
 
 use clamber::world::rapier3d::prelude::*;
-use clamber_scenes::rocks::Rocks;
 use glam::Vec3;
+
+use crate::scene::Rocks;
 
 pub(crate) struct Whole<'a> {
     scene: Rocks<'a>,

@@ -1,8 +1,9 @@
-//! Giants that walk in a valley, each in its own phase.
+//! Giants that walk in a valley, each in its own phase, and places on them. The bench `climber` has them, too.
 
 use std::error::Error;
 use std::sync::Arc;
 
+use clamber::climber::{Climber, ClimberMode, ClimberState};
 use clamber::prelude::*;
 use clamber::rig::{Clip, Pose};
 use clamber_scenes::{Creature, valley};
@@ -12,23 +13,10 @@ use rayon::prelude::*;
 /// Ticks per second.
 pub(crate) const RATE: f64 = 60.0;
 
-/// Distance between giants, metres.
-const APART: f64 = 31.0;
-
-/// Which vertices a tick skins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Skinning {
-    /// Only the vertices that queries touch.
-    Lazy,
-    /// All vertices.
-    Everything,
-}
-
 pub(crate) struct Herd {
     pub(crate) giants: Vec<Giant>,
     skeleton: Skeleton,
     walk: Clip,
-    skinning: Skinning,
 }
 
 pub(crate) struct Giant {
@@ -40,20 +28,27 @@ pub(crate) struct Giant {
     palette: Palette,
 }
 
+/// A place on a giant.
+pub(crate) struct Seat {
+    giant: usize,
+    anchor: Anchor,
+}
+
 impl Herd {
+    /// `count` giants in rows of `row`, `apart` metres from each other.
     pub(crate) fn new(
         creature: &Creature,
         count: usize,
-        skinning: Skinning,
+        row: usize,
+        apart: f64,
     ) -> Result<Self, Box<dyn Error>> {
         let walk = creature
             .clip_like(&["walk"])
             .ok_or("the creature has no walk clip")?;
         let mut rng = fastrand::Rng::with_seed(8);
-        let side = (count as f64).sqrt().ceil() as usize;
         let giant = |index: usize| {
-            let along = |step: usize| (step as f64 - (side as f64 - 1.0) / 2.0) * APART;
-            let (x, z) = (along(index % side), along(index / side));
+            let along = |step: usize| (step as f64 - (row as f64 - 1.0) / 2.0) * apart;
+            let (x, z) = (along(index % row), along(index / row));
             Giant {
                 surface: SkinnedSurface::new(Arc::clone(&creature.rig.collider)),
                 place: Similarity::from_translation(DVec3::new(x, valley::height(x, z), z)),
@@ -66,7 +61,6 @@ impl Herd {
             giants: (0..count).map(giant).collect(),
             skeleton: creature.rig.skeleton.clone(),
             walk: walk.clone(),
-            skinning,
         };
         herd.pose(0, 0..count)?;
         for giant in &mut herd.giants {
@@ -81,32 +75,59 @@ impl Herd {
         tick: usize,
         awake: std::ops::Range<usize>,
     ) -> Result<(), Box<dyn Error>> {
-        let Self {
-            giants,
-            skeleton,
-            walk,
-            skinning,
-        } = self;
-        for giant in &mut giants[awake] {
-            giant.advance(skeleton, walk, *skinning, tick)?;
+        for giant in &mut self.giants[awake] {
+            giant.advance(&self.skeleton, &self.walk, tick)?;
         }
         Ok(())
     }
 
     /// Poses all giants, on rayon's threads.
-    pub(crate) fn pose_in_parallel(&mut self, tick: usize) -> Result<(), Box<dyn Error>> {
-        let Self {
-            giants,
-            skeleton,
-            walk,
-            skinning,
-        } = self;
-        let posed = giants.par_iter_mut().try_for_each(|giant| {
-            giant
-                .advance(skeleton, walk, *skinning, tick)
-                .map_err(|error| error.to_string())
-        });
-        Ok(posed?)
+    pub(crate) fn pose_in_parallel(&mut self, tick: usize) -> Result<(), String> {
+        let (skeleton, walk) = (&self.skeleton, &self.walk);
+        self.giants.par_iter_mut().try_for_each(|giant| {
+            let posed = giant.advance(skeleton, walk, tick);
+            posed.map_err(|error| error.to_string())
+        })
+    }
+
+    /// A random place on a giant, and the Y of its unit normal.
+    pub(crate) fn seat(
+        &self,
+        giant: usize,
+        rng: &mut fastrand::Rng,
+    ) -> Result<(Seat, f32), Box<dyn Error>> {
+        let surface = &self.giants[giant].surface;
+        let triangle = TriangleId(rng.u32(0..surface.mesh().triangles().len() as u32));
+        let anchor = surface.anchor(triangle, [0.5, 0.25, 0.25])?;
+        let normal = surface.in_model().motion(&anchor, 1.0 / RATE)?.normal;
+        Ok((Seat { giant, anchor }, normal.y))
+    }
+
+    /// Puts a climber that is more than `away` metres from its seat back, just above it.
+    pub(crate) fn sit(
+        &self,
+        climber: &mut Climber,
+        seat: &Seat,
+        away: f64,
+    ) -> Result<(), Box<dyn Error>> {
+        let surface = &self.giants[seat.giant].surface;
+        let motion = surface.in_model().motion(&seat.anchor, 1.0 / RATE)?;
+        let place = surface.world_from_model();
+        let normal = (place.rotation * motion.normal.as_dvec3()).normalize();
+        let point = place.transform_point_f32(motion.position);
+        let position = point + normal * (climber.config().body.radius * 1.01);
+        if climber.state().position.distance(position) > away {
+            climber.restore(ClimberState {
+                position,
+                velocity: place.transform_vector(motion.velocity.as_dvec3()),
+                mode: ClimberMode::Falling,
+                support: None,
+                support_velocity: None,
+                stamina: 1.0,
+                ..*climber.state()
+            })?;
+        }
+        Ok(())
     }
 }
 
@@ -115,16 +136,11 @@ impl Giant {
         &mut self,
         skeleton: &Skeleton,
         walk: &Clip,
-        skinning: Skinning,
         tick: usize,
     ) -> Result<(), Box<dyn Error>> {
         let time = self.phase + tick as f64 / RATE;
         walk.sample_into(time, Playback::Loop, &mut self.pose)?;
         skeleton.palette_into(&self.pose, &mut self.palette)?;
-        self.surface.advance(&self.palette, self.place)?;
-        if skinning == Skinning::Everything {
-            self.surface.skin_ahead();
-        }
-        Ok(())
+        Ok(self.surface.advance(&self.palette, self.place)?)
     }
 }

@@ -23,19 +23,23 @@ mod herd;
 mod riders;
 
 use std::error::Error;
+use std::ops::Range;
 use std::process::ExitCode;
 use std::time::Instant;
 
 use clamber::world::rapier3d::prelude::PhysicsWorld;
 use clamber::world::{BodyPoses, Obstacle, ObstacleId, RapierTerrain};
 use clamber_scenes::giant::giant_of;
-use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+use clamber_scenes::measure::{Bound, Cells, exit_code, is_brief, quantile};
 use clamber_scenes::{Creature, valley};
-use herd::{Herd, Skinning};
+use herd::Herd;
 use riders::Riders;
 
 /// The largest number of giants that have riders.
 const FEW: usize = 3;
+
+/// Distance between giants, metres.
+const APART: f64 = 31.0;
 
 /// Number of ticks at the start that are not timed: climbers land in them.
 const SETTLE: usize = 20;
@@ -67,13 +71,7 @@ const BRIEF: Effort = Effort {
 };
 
 fn main() -> ExitCode {
-    match run(if is_brief() { &BRIEF } else { &FULL }) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(if is_brief() { &BRIEF } else { &FULL }))
 }
 
 fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
@@ -107,9 +105,19 @@ fn obstacles<'a>(
     std::iter::once(ground).chain(giants).collect()
 }
 
+/// Which vertices a tick skins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Skinning {
+    /// Only the vertices that queries touch.
+    Lazy,
+    /// All vertices.
+    Everything,
+}
+
 /// A herd and its riders, with the times of their ticks.
 struct Scene<'a> {
     herd: Herd,
+    skinning: Skinning,
     riders: Riders,
     world: &'a PhysicsWorld,
     /// Microseconds of each tick: poses of the `first` giants, poses of the other giants, and the riders.
@@ -125,8 +133,10 @@ impl<'a> Scene<'a> {
         mounts: usize,
         skinning: Skinning,
     ) -> Result<Self, Box<dyn Error>> {
-        let herd = Herd::new(creature, giants, skinning)?;
+        let row = (giants as f64).sqrt().ceil() as usize;
+        let herd = Herd::new(creature, giants, row, APART)?;
         Ok(Self {
+            skinning,
             riders: Riders::new(&herd, riders, mounts)?,
             herd,
             world,
@@ -134,16 +144,27 @@ impl<'a> Scene<'a> {
         })
     }
 
+    fn pose(&mut self, tick: usize, awake: Range<usize>) -> Result<(), Box<dyn Error>> {
+        self.herd.pose(tick, awake.clone())?;
+        if self.skinning == Skinning::Everything {
+            for giant in &mut self.herd.giants[awake] {
+                giant.surface.skin_ahead();
+            }
+        }
+        Ok(())
+    }
+
     /// Runs one tick with the first `awake` giants posed. The poses of the `first` ones are timed separately.
     fn tick(&mut self, tick: usize, first: usize, awake: usize) -> Result<(), Box<dyn Error>> {
         self.riders.sit(&self.herd)?;
         let before = BodyPoses::default();
-        let terrain = RapierTerrain::of_world(self.world, &before);
+        let world = self.world;
+        let terrain = RapierTerrain::of_world(world, &before);
         let start = Instant::now();
-        self.herd.pose(tick, 0..first)?;
+        self.pose(tick, 0..first)?;
         let ridden = micros(start);
         let start = Instant::now();
-        self.herd.pose(tick, first..awake)?;
+        self.pose(tick, first..awake)?;
         let others = micros(start);
         let start = Instant::now();
         let all = obstacles(&terrain, &self.herd);
@@ -193,13 +214,13 @@ fn valley_of(
         eager.tick(tick, mounts, giants)?;
         same(&lazy.riders, &eager.riders, tick)?;
     }
-    let name = |what: &str| format!("{giants} giants, {riders} riders: {what}");
-    cells.value(&name("poses, us"), lazy.part(0) + lazy.part(1));
-    cells.value(&name("riders, us"), lazy.part(2));
+    let mut rows = cells.of(format!("{giants} giants, {riders} riders"));
+    rows.value("poses, us", lazy.part(0) + lazy.part(1));
+    rows.value("riders, us", lazy.part(2));
     let (whole, all) = (lazy.whole(), eager.whole());
-    cells.value(&name("a tick, us"), whole);
-    cells.value(&name("everything skinned, us"), all);
-    cells.value(&name("everything skinned / a tick"), all / whole);
+    rows.value("a tick, us", whole);
+    rows.value("everything skinned, us", all);
+    rows.value("everything skinned / a tick", all / whole);
     let touched = lazy
         .herd
         .giants
@@ -209,20 +230,11 @@ fn valley_of(
     let share = |part: usize, of: usize| 100.0 * part as f64 / of as f64;
     let sum = |count: fn(&clamber::surface::Diagnostics) -> usize| touched.iter().map(count).sum();
     let skinned = share(sum(|d| d.vertices_skinned), sum(|d| d.vertices));
-    cells.value(&name("vertices skinned, %"), skinned);
-    cells.value(
-        &name("clusters touched"),
-        sum(|d| d.clusters_touched) as f64,
-    );
-    cells.value(
-        &name("bounds evaluated"),
-        sum(|d| d.bounds_evaluated) as f64,
-    );
+    rows.value("vertices skinned, %", skinned);
+    rows.value("clusters touched", sum(|d| d.clusters_touched) as f64);
+    rows.value("bounds evaluated", sum(|d| d.bounds_evaluated) as f64);
     if riders > 0 {
-        cells.value(
-            &name("riders that stand, %"),
-            100.0 * lazy.riders.standing(),
-        );
+        rows.value("riders that stand, %", 100.0 * lazy.riders.standing());
     }
     Ok(())
 }
@@ -245,23 +257,18 @@ fn on_one(
         asleep.tick(tick, 1, 1)?;
         alone.tick(tick, 1, 1)?;
     }
-    let name = |what: &str| format!("{riders} riders on one of {giants} giants: {what}");
+    let mut rows = cells.of(format!("{riders} riders on one of {giants} giants"));
     let (whole, one, others) = (many.whole(), alone.whole(), many.part(1));
-    cells.value(&name("a tick, us"), whole);
-    cells.value(&name("poses of the others, us"), others);
-    cells.value(&name("that one alone, us"), one);
-    let over = whole / (one + others);
-    cells.push(
-        &name("a tick / one alone and the others' poses"),
-        over,
-        Bound::Most(1.3),
+    rows.value("a tick, us", whole);
+    rows.value("poses of the others, us", others);
+    rows.value("that one alone, us", one);
+    let (all, most) = (one + others, Bound::Most(1.3));
+    rows.push(
+        "a tick / one alone and the others' poses",
+        whole / all,
+        most,
     );
-    let over = asleep.whole() / one;
-    cells.push(
-        &name("the others asleep / one alone"),
-        over,
-        Bound::Most(1.3),
-    );
+    rows.push("the others asleep / one alone", asleep.whole() / one, most);
     Ok(())
 }
 
@@ -304,18 +311,18 @@ fn on_two_cores(
     }
     let [mut one, mut two] = scenes.map(|scene| scene.times[0].clone());
     for (which, share) in [("medians", 0.5), ("fastest tenths", 0.1)] {
-        let name = |what: &str| format!("{riders} riders on {giants} giants, {which}: {what}");
+        let mut rows = cells.of(format!("{riders} riders on {giants} giants, {which}"));
         let (one, two) = (quantile(&mut one, share), quantile(&mut two, share));
-        cells.value(&name("a tick on one core, us"), one);
-        cells.value(&name("a tick on two cores, us"), two);
+        rows.value("a tick on one core, us", one);
+        rows.value("a tick on two cores, us", two);
         let bound = if share < 0.5 {
             Bound::Least(1.7)
         } else {
             Bound::None
         };
-        cells.push(&name("one core / two"), one / two, bound);
+        rows.push("one core / two", one / two, bound);
         let best = quantile(&mut in_turn, share) / quantile(&mut at_once, share);
-        cells.value(&name("two scenes in turn / at once"), best);
+        rows.value("two scenes in turn / at once", best);
     }
     Ok(())
 }

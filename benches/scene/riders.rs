@@ -3,12 +3,11 @@
 use std::error::Error;
 
 use clamber::climber::{Climber, ClimberConfig, ClimberInput, ClimberMode, ClimberState};
-use clamber::prelude::*;
 use clamber::world::{Obstacle, ObstacleId};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::herd::{Herd, RATE};
+use crate::herd::{Herd, RATE, Seat};
 
 /// Smallest Y of a seat's unit normal, so that a climber can stand there while the giant walks.
 const LEVEL: f32 = 0.85;
@@ -25,11 +24,6 @@ pub(crate) struct Riders {
     seats: Vec<Seat>,
 }
 
-struct Seat {
-    giant: usize,
-    anchor: Anchor,
-}
-
 impl Riders {
     /// `count` climbers with seats on level skin, spread over the first `mounts` giants.
     pub(crate) fn new(herd: &Herd, count: usize, mounts: usize) -> Result<Self, Box<dyn Error>> {
@@ -37,12 +31,9 @@ impl Riders {
         let mut seats = Vec::with_capacity(count);
         while seats.len() < count {
             // The riders of a giant are side by side in the list, so that threads share few giants.
-            let giant = seats.len() * mounts / count;
-            let surface = &herd.giants[giant].surface;
-            let triangle = TriangleId(rng.u32(0..surface.mesh().triangles().len() as u32));
-            let anchor = surface.anchor(triangle, [0.5, 0.25, 0.25])?;
-            if surface.in_model().motion(&anchor, 1.0 / RATE)?.normal.y > LEVEL {
-                seats.push(Seat { giant, anchor });
+            let (seat, up) = herd.seat(seats.len() * mounts / count, &mut rng)?;
+            if up > LEVEL {
+                seats.push(seat);
             }
         }
         let climber = || Climber::new(ClimberConfig::default(), DVec3::Y * 1e4);
@@ -53,22 +44,7 @@ impl Riders {
     /// Puts climbers that fell or walked off back, just above their seats.
     pub(crate) fn sit(&mut self, herd: &Herd) -> Result<(), Box<dyn Error>> {
         for (climber, seat) in self.climbers.iter_mut().zip(&self.seats) {
-            let surface = &herd.giants[seat.giant].surface;
-            let motion = surface.in_model().motion(&seat.anchor, 1.0 / RATE)?;
-            let place = surface.world_from_model();
-            let normal = (place.rotation * motion.normal.as_dvec3()).normalize();
-            let point = place.transform_point_f32(motion.position);
-            let position = point + normal * (climber.config().body.radius * 1.01);
-            if (climber.state().position - position).length() > AWAY {
-                climber.restore(ClimberState {
-                    position,
-                    velocity: place.transform_vector(motion.velocity.as_dvec3()),
-                    mode: ClimberMode::Falling,
-                    support: None,
-                    support_velocity: None,
-                    ..*climber.state()
-                })?;
-            }
+            herd.sit(climber, seat, AWAY)?;
         }
         Ok(())
     }

@@ -9,6 +9,7 @@ use clamber::prelude::*;
 
 use clamber_scenes::giant::giant_of;
 use clamber_scenes::measure::{Bound, Cells, quantile};
+use clamber_scenes::riders::mean_edge;
 use glam::Vec3;
 
 use crate::TOLERANCE;
@@ -39,20 +40,14 @@ const ABOVE: f32 = 3.0;
 impl Field {
     pub(crate) fn new(vertices: usize) -> Result<Self, Box<dyn Error>> {
         let creature = giant_of(vertices)?;
-        let walk = creature.rig.clips.iter().find(|clip| clip.name == "walk");
-        let walk = walk.ok_or("the giant cannot walk")?;
-        let rest = creature.rig.skeleton.rest_pose();
-        let palette = |seconds: f64| -> Result<Palette, Box<dyn Error>> {
-            let pose = walk.sample(&rest, seconds, Playback::Loop)?;
-            Ok(creature.rig.skeleton.palette(&pose)?)
-        };
+        let palette = |seconds: f64| creature.palette("walk", seconds);
         let palettes = [palette(0.5)?, palette(0.5 + 1.0 / 60.0)?];
         let mut surface = SkinnedSurface::new(creature.rig.collider.clone());
         surface.place(&palettes[0], Similarity::IDENTITY)?;
         surface.advance(&palettes[1], Similarity::IDENTITY)?;
         Ok(Self {
             parry: Parry::new(&surface)?,
-            edge: mean_edge(&surface),
+            edge: mean_edge(&creature.rig.collider),
             surface,
             palettes,
         })
@@ -84,25 +79,15 @@ impl Field {
         }
         let [cast, sweep, parry, first_cast, first_sweep] =
             times.map(|mut times| quantile(&mut times, 0.5));
-        cells.value(&format!("{name}: cast, us"), cast);
-        cells.value(&format!("{name}: sweep, us"), sweep);
-        cells.value(&format!("{name}: parry's cast, us"), parry);
-        cells.push(&format!("{name}: parry / cast"), parry / cast, bound);
-        cells.push(
-            &format!("{name}: sweep / cast"),
-            sweep / cast,
-            Bound::Least(1.3),
-        );
-        cells.value(&format!("{name}: cast, first of its tick, us"), first_cast);
-        cells.value(
-            &format!("{name}: sweep, first of its tick, us"),
-            first_sweep,
-        );
-        let (name, ratio) = (
-            format!("{name}: parry / cast, first of its tick"),
-            parry / first_cast,
-        );
-        cells.value(&name, ratio);
+        let mut rows = cells.of(name);
+        rows.value("cast, us", cast);
+        rows.value("sweep, us", sweep);
+        rows.value("parry's cast, us", parry);
+        rows.push("parry / cast", parry / cast, bound);
+        rows.push("sweep / cast", sweep / cast, Bound::Least(1.3));
+        rows.value("cast, first of its tick, us", first_cast);
+        rows.value("sweep, first of its tick, us", first_sweep);
+        rows.value("parry / cast, first of its tick", parry / first_cast);
         Ok(())
     }
 
@@ -187,14 +172,10 @@ impl Field {
             "{name}: {hits} hits of {}, worst difference {worst:.1e} radii",
             casts.len()
         );
-        cells.value(
-            &format!("{name}: hits that parry misses"),
-            f64::from(only_ours),
-        );
-        cells.value(
-            &format!("{name}: hits of parry's where no skin is"),
-            f64::from(nothing_there),
-        );
+        let mut rows = cells.of(name);
+        rows.value("hits that parry misses", f64::from(only_ours));
+        let what = "hits of parry's where no skin is";
+        rows.value(what, f64::from(nothing_there));
         if only_theirs > 0 {
             return Err(format!("{name}: clamber misses {only_theirs} hits of parry's").into());
         }
@@ -212,13 +193,4 @@ fn once<T>(mut run: impl FnMut() -> T) -> f64 {
     let start = Instant::now();
     black_box(run());
     start.elapsed().as_secs_f64() * 1e6
-}
-
-fn mean_edge(surface: &SkinnedSurface) -> f32 {
-    let (mesh, mut sum) = (surface.mesh(), 0.0);
-    for [a, b, c] in mesh.triangles() {
-        let [a, b, c] = [a, b, c].map(|v| mesh.positions()[v.index()]);
-        sum += f64::from(a.distance(b) + b.distance(c) + c.distance(a));
-    }
-    (sum / (3 * mesh.triangles().len()) as f64) as f32
 }

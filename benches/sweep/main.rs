@@ -19,7 +19,7 @@ pub(crate) const TOLERANCE: f64 = 1e-4;
 use std::error::Error;
 use std::process::ExitCode;
 
-use clamber_scenes::measure::{Bound, Cells, is_brief};
+use clamber_scenes::measure::{Bound, Cells, exit_code, is_brief};
 
 use casts::Field;
 
@@ -49,13 +49,7 @@ const BRIEF: Effort = Effort {
 
 fn main() -> ExitCode {
     let effort = if is_brief() { BRIEF } else { FULL };
-    match run(&effort) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(&effort))
 }
 
 fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {

@@ -18,7 +18,7 @@ use std::time::Duration;
 use clamber::geometry::{Capsule, Ray};
 use clamber::prelude::*;
 use clamber_scenes::giant::giant_of;
-use clamber_scenes::measure::{Bound, Cells, is_brief, median_us};
+use clamber_scenes::measure::{Bound, Cells, exit_code, is_brief, median_us};
 use clamber_scenes::riders::Workload;
 use contender::{Contender, Eager, Lazy, Parry};
 use glam::Vec3;
@@ -56,13 +56,7 @@ const BRIEF: Effort = Effort {
 
 fn main() -> ExitCode {
     let effort = if is_brief() { BRIEF } else { FULL };
-    match run(&effort) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(&effort))
 }
 
 fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
@@ -76,11 +70,8 @@ fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
         let mut field = Field::new(&workload)?;
         for caches in [Caches::Cold, Caches::Warm] {
             let laps = field.race(&workload, caches, &mut stream)?;
-            laps_of(
-                &mut cells,
-                &format!("one rider, {label}, {caches:?}"),
-                &laps,
-            );
+            let name = format!("one rider, {label}, {caches:?}");
+            laps_of(&mut cells, &name, &laps);
             if caches == Caches::Warm {
                 lazy_warm.push(laps[0].median_us);
             }
@@ -92,16 +83,9 @@ fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
             } else {
                 [Bound::None; 2]
             };
-            cells.push(
-                &format!("one rider, {label}, {caches:?}: eager / lazy"),
-                eager,
-                bounds[0],
-            );
-            cells.push(
-                &format!("one rider, {label}, {caches:?}: parry / lazy"),
-                parry,
-                bounds[1],
-            );
+            let mut rows = cells.of(name);
+            rows.push("eager / lazy", eager, bounds[0]);
+            rows.push("parry / lazy", parry, bounds[1]);
         }
         if vertices == effort.large {
             many_riders(effort, &creature, &mut field, &mut stream, &mut cells)?;
@@ -166,8 +150,9 @@ fn many_riders(
         let name = format!("{} riders, {caches:?}", effort.riders);
         laps_of(cells, &name, &laps);
         let (eager, parry) = (laps[1].over(&laps[0]), laps[2].over(&laps[0]));
-        cells.push(&format!("{name}: eager / lazy"), eager, Bound::Least(1.0));
-        cells.push(&format!("{name}: parry / lazy"), parry, Bound::Least(15.0));
+        let mut rows = cells.of(name);
+        rows.push("eager / lazy", eager, Bound::Least(1.0));
+        rows.push("parry / lazy", parry, Bound::Least(15.0));
     }
     Ok(())
 }

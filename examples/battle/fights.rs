@@ -1,7 +1,7 @@
 //! Many fights, one for each seed, on all cores.
 
 use clamber_scenes::Creature;
-use clamber_scenes::battle::{Battle, BattleOptions, Counts, SceneError, TICK};
+use clamber_scenes::battle::{Battle, BattleOptions, Counts, TICK};
 
 use crate::Failure;
 
@@ -19,7 +19,7 @@ pub(crate) fn fight_all(options: &BattleOptions, count: u64) -> Result<bool, Fai
             let start = |seed: &u64| {
                 let (mut options, creature) = (options.clone(), &creature);
                 options.seed = *seed;
-                scope.spawn(move || fight(creature, &options))
+                scope.spawn(move || fight(creature, &options).map_err(|error| error.to_string()))
             };
             let threads: Vec<_> = seeds.iter().map(start).collect();
             threads.into_iter().map(|thread| thread.join()).collect()
@@ -57,14 +57,14 @@ pub(crate) fn fight_all(options: &BattleOptions, count: u64) -> Result<bool, Fai
 fn fight(
     creature: &Creature,
     options: &BattleOptions,
-) -> Result<(Counts, Option<f64>, u64), SceneError> {
+) -> Result<(Counts, Option<f64>, u64), Failure> {
     let mut battle = Battle::new(creature, options)?;
     let mut ticks = 0..options.ticks();
-    while battle.counts().killed == 0
+    while battle.counts.killed == 0
         && let Some(tick) = ticks.next()
     {
         battle.step(options.input_at(tick))?;
     }
     let top = battle.bot().and_then(|(_, _, arrived)| arrived);
-    Ok((*battle.counts(), top, battle.hash()))
+    Ok((battle.counts, top, battle.hash()))
 }

@@ -16,9 +16,10 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clamber_scenes::battle::{Battle, TICK, Watch};
+use clamber_scenes::measure::checked;
 use options::Options;
 
-type Failure = Box<dyn Error + Send + Sync>;
+type Failure = Box<dyn Error>;
 
 /// A film or a recording of a battle.
 trait Camera {
@@ -37,17 +38,7 @@ fn main() -> ExitCode {
         Some(count) => fights::fight_all(&options.battle, count),
         None => run(&options),
     };
-    match all_hold {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => {
-            eprintln!("battle: a check failed");
-            ExitCode::FAILURE
-        }
-        Err(error) => {
-            eprintln!("battle: {error}");
-            ExitCode::from(2)
-        }
-    }
+    checked("battle", all_hold)
 }
 
 /// Fights a battle, films and records it, and reports the results. Returns true if all checks hold.
@@ -115,7 +106,7 @@ fn film(_: &Options) -> Result<Box<dyn Camera>, Failure> {
 #[cfg(feature = "record")]
 impl Camera for clamber_scenes::battle::BattleRecorder<BufWriter<File>> {
     fn watch(&mut self, battle: &Battle<'_>) -> Result<(), Failure> {
-        Ok(self.tick(battle)?)
+        self.tick(battle)
     }
 
     fn finish(self: Box<Self>) -> Result<(), Failure> {

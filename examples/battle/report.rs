@@ -9,9 +9,9 @@ use crate::Failure;
 
 /// The results of a battle as a table.
 pub(crate) fn table(battle: &Battle<'_>, watch: &Watch, checks: &[Check]) -> String {
-    let (mesh, counts, rocks) = (battle.surface().mesh(), battle.counts(), battle.rocks());
+    let (mesh, counts, rocks) = (battle.surface().mesh(), &battle.counts, &battle.rocks);
     let time_us = |part: usize, share: f64| {
-        let mut times: Vec<f64> = battle.times().iter().map(|times| times[part]).collect();
+        let mut times: Vec<f64> = battle.times.iter().map(|times| times[part]).collect();
         quantile(&mut times, share)
     };
     let ticks = counts.tick as f64;
@@ -24,8 +24,8 @@ pub(crate) fn table(battle: &Battle<'_>, watch: &Watch, checks: &[Check]) -> Str
   ticks                       {ticks} ({:.1} s), {:.1} % riding
   ticks by mode               {}
   drops, landings             {}, {}\n",
-        battle.creature().name,
-        battle.height(),
+        battle.creature.name,
+        battle.height,
         mesh.joint_count(),
         mesh.positions().len(),
         mesh.triangles().len(),
@@ -88,9 +88,9 @@ pub(crate) fn write(
     mut out: impl Write,
 ) -> Result<(), Failure> {
     let summary = json!({
-        "creature": battle.creature().name,
+        "creature": battle.creature.name,
         "hash": format!("{:016x}", battle.hash()),
-        "counts": battle.counts(),
+        "counts": battle.counts,
         "checks": checks,
     });
     writeln!(out, "{summary:#}")?;

@@ -27,7 +27,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use clamber::colossus::CreatureKind;
+use clamber::fight::{Arena, ArenaConfig};
 use clamber_scenes::duel::{Duel, RATE};
+use clamber_scenes::measure::exit_code;
 use clap::Parser;
 use line::Line;
 use peer::Peer;
@@ -74,17 +76,10 @@ struct Options {
 
 fn main() -> ExitCode {
     let options = Options::parse();
-    let result = match (options.player, options.peer) {
+    exit_code(match (options.player, options.peer) {
         (Some(player), Some(address)) => over_network(&options, player.into(), address),
         _ => in_one_process(&options),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("duel: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    })
 }
 
 /// Runs all peers in this process, over a line that delays and loses messages, as fast as possible.
@@ -113,7 +108,11 @@ fn in_one_process(options: &Options) -> Result<(), Box<dyn Error>> {
         for (number, peer) in peers.iter_mut().enumerate() {
             peer.begin_again(lines[number].clone(), &of(number, 3), &saved)?;
         }
-        let mut newcomer = Peer::new(lines[2].clone(), &of(2, 3), Duel::empty(&kind)?, joins)?;
+        // An arena that knows the giant, and nobody in it yet: its state comes from the others.
+        let mut fight = Duel::new(&kind)?;
+        fight.arena = Arena::new(ArenaConfig::default())?;
+        fight.arena.add_kind(Arc::clone(&kind))?;
+        let mut newcomer = Peer::new(lines[2].clone(), &of(2, 3), fight, joins)?;
         newcomer.begin_again(lines[2].clone(), &of(2, 3), &saved)?;
         peers.push(newcomer);
     }

@@ -11,7 +11,8 @@ use clamber::fight::rollback::ggrs::{
     SessionBuilder, SessionState,
 };
 use clamber::fight::rollback::{AdvanceError, ArenaSession, Rollback, Watch};
-use clamber::fight::{ArenaEvent, Order};
+use clamber::fight::{ArenaEvent, FighterConfig, Order};
+use clamber::glam::DVec3;
 
 use clamber_scenes::duel::Duel;
 
@@ -20,6 +21,14 @@ const DELAY: usize = 2;
 
 /// Largest number of ticks that are predicted and repeated. With less, a peer waits more often on a slow line.
 const WINDOW: usize = 10;
+
+/// A third climber joins in the step in which this is given: behind the giant.
+fn joiner() -> Order {
+    Order::AddFighter {
+        config: Box::new(FighterConfig::hero()),
+        position: DVec3::new(-4.0, 1.0, -25.0),
+    }
+}
 
 /// The address of another peer.
 pub(crate) trait Address: Clone + PartialEq + Eq + Hash + Debug + 'static {}
@@ -156,7 +165,7 @@ impl<A: Address> Peer<A> {
                 let next = arena.tick() + 1;
                 // Only the new session adds the climber: the ticks of the old one beyond its end are discarded.
                 let orders: Vec<Order> = match joins {
-                    Some(tick) if tick == next && tick == began + 1 => vec![Duel::joins()],
+                    Some(tick) if tick == next && tick == began + 1 => vec![joiner()],
                     _ => Vec::new(),
                 };
                 // A climber that joins in this step has no input in it.

@@ -7,9 +7,10 @@ use std::fmt;
 
 use clamber::prelude::*;
 use clamber::world::rapier3d::prelude::*;
-use clamber_scenes::rocks::Rocks;
 use clamber_scenes::{solid_angle, valley};
 use glam::DVec3;
+
+use crate::scene::Rocks;
 
 /// Where the rocks are, and what happened to them.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,7 +42,7 @@ impl Outcome {
         let mut positions = Vec::new();
         scene.surface.skin_all(&mut positions);
         let root = scene.surface.world_from_model();
-        for rock in scene.rocks() {
+        for rock in &scene.rocks.bodies {
             let place = scene.world.bodies[*rock].translation().as_dvec3();
             let inside = solid_angle::is_inside(
                 &positions,
@@ -55,9 +56,9 @@ impl Outcome {
 
     /// Notes where the settled rocks lie, and the largest depth of one in the skin.
     pub(crate) fn settle(&mut self, scene: &Rocks<'_>) {
-        self.rocks = scene.rocks().len();
+        self.rocks = scene.rocks.bodies.len();
         (self.on_giant, self.on_ground) = (0, 0);
-        for rock in scene.rocks() {
+        for rock in &scene.rocks.bodies {
             let place = scene.world.bodies[*rock].translation().as_dvec3();
             let high = place.y - valley::height(place.x, place.z);
             let skin = scene.surface.closest_point(place, PILE);

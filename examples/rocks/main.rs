@@ -1,17 +1,19 @@
 //! Rocks, stones and logs fall on the giant, ride on it, and roll off when it shakes.
 //!
-//! `cargo run --release --example rocks -- --help` lists the options. The scene is `clamber_scenes::rocks`.
+//! `cargo run --release --example rocks -- --help` lists the options. The bench `debris` has the same scene.
 
 mod checks;
+mod scene;
 
 use std::error::Error;
 use std::process::ExitCode;
 
 use clamber_scenes::giant::giant;
-use clamber_scenes::rocks::{Rocks, TICK};
+use clamber_scenes::measure::checked;
 use clap::Parser;
 
 use checks::Outcome;
+use scene::{CREATURE, Rocks, TICK};
 
 /// Time in which rocks fall on the giant, seconds.
 const FALL: f64 = 8.0;
@@ -47,17 +49,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => {
-            eprintln!("rocks: a check failed");
-            ExitCode::FAILURE
-        }
-        Err(error) => {
-            eprintln!("rocks: {error}");
-            ExitCode::from(2)
-        }
-    }
+    checked("rocks", run(&Options::parse()))
 }
 
 fn run(options: &Options) -> Result<bool, Box<dyn Error>> {
@@ -98,7 +90,8 @@ fn play(
 ) -> Result<(), Box<dyn Error>> {
     for _ in 0..(seconds / TICK).round() as u32 {
         scene.pose()?;
-        let report = scene.step()?;
+        let skin = (CREATURE, &scene.surface);
+        let report = scene.rocks.step(skin, &mut scene.world, TICK)?;
         outcome.put_back += report.put_back;
         outcome.caught += report.caught;
         *tick += 1;

@@ -25,8 +25,8 @@ mod triangle;
 
 pub use ball::ball;
 pub use heap::taken_from_heap;
-pub use peer::{Answer, Entry, Make, Nearest, Peer, RayHit, Unsupported};
-pub use plot::{Plot, Series};
+pub use peer::{Answer, Entry, Kind, Make, Nearest, Peer, RayHit, Unsupported};
+pub use plot::Plot;
 pub use push_out::mean_push_out;
 
 /// All peers that are compiled in; clamber's come first.

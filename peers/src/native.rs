@@ -129,13 +129,6 @@ impl Native {
         mesh: &Arc<ColliderMesh>,
         functions: &'static Functions,
     ) -> Result<Box<dyn Peer>, Box<dyn Error>> {
-        Ok(Box::new(Self::new(mesh, functions)?))
-    }
-
-    fn new(
-        mesh: &Arc<ColliderMesh>,
-        functions: &'static Functions,
-    ) -> Result<Self, Box<dyn Error>> {
         let skin = Skin::new(mesh);
         let triangles = skin.triangles();
         let vertices = u32::try_from(skin.positions.len())?;
@@ -152,11 +145,11 @@ impl Native {
             )
         };
         let peer = NonNull::new(peer).ok_or("the library rejected the mesh")?;
-        Ok(Self {
+        Ok(Box::new(Self {
             functions,
             peer,
             skin,
-        })
+        }))
     }
 }
 
@@ -254,7 +247,7 @@ impl Peer for Native {
         from_heap + hidden as usize + self.skin.bytes_at_rest()
     }
 
-    fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3) {
-        self.skin.motion(triangle, barycentric)
+    fn skin(&self) -> Option<&Skin> {
+        Some(&self.skin)
     }
 }

@@ -21,7 +21,7 @@ use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::rig::Palette;
 use glam::{DVec3, Vec3, Vec3A};
 
-use crate::peer::{Answer, Entry, Nearest, Peer, RayHit, Unsupported};
+use crate::peer::{Answer, Entry, Nearest, Peer, RayHit};
 use crate::skin::Skin;
 use crate::triangle;
 
@@ -136,31 +136,14 @@ impl Peer for Obvhs {
             }
             for slot in node.first_index..node.first_index + node.prim_count {
                 let corners = self.skin.corners(of[slot as usize] as usize);
-                let found = triangle::closest_point(point, corners);
-                let distance = found.distance(point);
-                if distance <= limit {
-                    limit = distance;
-                    nearest = Some(Nearest {
-                        point: found,
-                        distance,
-                    });
-                }
+                triangle::offer(point, corners, &mut limit, &mut nearest);
             }
         }
         Ok(nearest)
     }
 
-    /// obvhs has queries for rays and boxes only.
-    fn cast_sphere(&mut self, _: &Sphere, _: Vec3) -> Answer<Option<f32>> {
-        Err(Unsupported)
-    }
-
-    fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3) {
-        self.skin.motion(triangle, barycentric)
-    }
-
-    fn bytes(&self, from_heap: usize) -> usize {
-        from_heap + self.skin.bytes_at_rest()
+    fn skin(&self) -> Option<&Skin> {
+        Some(&self.skin)
     }
 }
 

@@ -111,7 +111,7 @@ impl Peer for Ours {
         let space = self.surface.in_model();
         let ball = self.local_ball(sphere);
         let hit = ball.and_then(|ball| space.cast_capsule(&ball, [motion; 2], &CAST));
-        Ok(hit.map(|hit| hit.time as f32))
+        Ok(hit.map(|hit| hit.fraction as f32))
     }
 
     fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3) {

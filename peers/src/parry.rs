@@ -113,11 +113,7 @@ impl Peer for Parry {
         Ok(hit.ok().flatten().map(|hit| hit.time_of_impact))
     }
 
-    fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3) {
-        self.skin.motion(triangle, barycentric)
-    }
-
-    fn bytes(&self, from_heap: usize) -> usize {
-        from_heap + self.skin.bytes_at_rest()
+    fn skin(&self) -> Option<&Skin> {
+        Some(&self.skin)
     }
 }

@@ -6,12 +6,37 @@ use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::rig::Palette;
 use glam::{DVec3, Vec3};
 
+use crate::skin::Skin;
+
 /// Error: the peer has no such query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unsupported;
 
 /// The answer of a peer to a query that it may not support.
 pub type Answer<T> = Result<T, Unsupported>;
+
+/// A kind of query.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// [`Peer::cast_ray`].
+    Ray,
+    /// [`Peer::overlap_sphere`].
+    Overlap,
+    /// [`Peer::closest_point`].
+    Closest,
+    /// [`Peer::cast_sphere`].
+    Cast,
+}
+
+impl Kind {
+    /// All kinds, with their names in tables.
+    pub const ALL: [(Self, &str); 4] = [
+        (Self::Ray, "ray"),
+        (Self::Overlap, "overlap"),
+        (Self::Closest, "closest point"),
+        (Self::Cast, "sphere cast"),
+    ];
+}
 
 /// The first hit of a ray on the skin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,15 +87,29 @@ pub trait Peer {
     /// touch the skin.
     ///
     /// # Errors
-    /// As [`Peer::cast_ray`].
-    fn cast_sphere(&mut self, sphere: &Sphere, motion: Vec3) -> Answer<Option<f32>>;
+    /// As [`Peer::cast_ray`]; always for a peer without such a query.
+    fn cast_sphere(&mut self, _sphere: &Sphere, _motion: Vec3) -> Answer<Option<f32>> {
+        Err(Unsupported)
+    }
+
+    /// The positions that the peer gets in each pose; `None` for clamber, which skins by itself.
+    fn skin(&self) -> Option<&Skin> {
+        None
+    }
 
     /// Position of a point of the skin, and its displacement since the last pose.
-    fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3);
+    fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3) {
+        let skin = self.skin();
+        skin.map_or((Vec3::NAN, Vec3::NAN), |skin| {
+            skin.motion(triangle, barycentric)
+        })
+    }
 
     /// Memory of the peer in bytes, including the data that it skins from. `from_heap` is the heap memory that making
     /// the peer took, bytes.
-    fn bytes(&self, from_heap: usize) -> usize;
+    fn bytes(&self, from_heap: usize) -> usize {
+        from_heap + self.skin().map_or(0, Skin::bytes_at_rest)
+    }
 }
 
 /// A function that makes a peer.

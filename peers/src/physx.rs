@@ -10,7 +10,7 @@ use std::ptr::null_mut;
 use std::sync::Arc;
 
 use clamber_surface::geometry::{Ray, Sphere};
-use clamber_surface::mesh::{ColliderMesh, TriangleId};
+use clamber_surface::mesh::ColliderMesh;
 use clamber_surface::rig::Palette;
 use glam::{DVec3, Vec3};
 use physx_sys::{
@@ -226,12 +226,8 @@ impl Peer for PhysX {
         }))
     }
 
-    fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3) {
-        self.skin.motion(triangle, barycentric)
-    }
-
-    /// PhysX allocates with the C library, so `from_heap` includes all of it.
-    fn bytes(&self, from_heap: usize) -> usize {
-        from_heap + self.skin.bytes_at_rest()
+    // PhysX allocates with the C library, so `bytes` includes all of its memory.
+    fn skin(&self) -> Option<&Skin> {
+        Some(&self.skin)
     }
 }

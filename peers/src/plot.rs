@@ -14,19 +14,10 @@ pub struct Plot {
     pub x: String,
     /// Label of the vertical axis, with its unit.
     pub y: String,
-    /// The series. Each has its own colour, up to twelve.
-    pub series: Vec<Series>,
-}
-
-/// Points of one colour, with one entry in the legend.
-#[derive(Clone, Debug)]
-pub struct Series {
-    /// The name in the legend.
-    pub name: String,
-    /// The points. Those with a coordinate that is not finite and above 0 are left out.
-    pub points: Vec<(f64, f64)>,
-    /// True to join the points by lines, in their order.
+    /// True to join the points of a series by lines, in their order.
     pub joined: bool,
+    /// Names in the legend, and points. Each series has its own colour, up to twelve.
+    pub series: Vec<(String, Vec<(f64, f64)>)>,
 }
 
 const COLORS: [RGBColor; 12] = [
@@ -45,12 +36,21 @@ const COLORS: [RGBColor; 12] = [
 ];
 
 impl Plot {
+    /// Adds a point to the series of this name. One with a coordinate that is not finite and above 0 is not drawn.
+    pub fn add(&mut self, series: &str, (x, y): (f64, f64)) {
+        let is_drawn = |value: f64| value.is_finite() && value > 0.0;
+        let point = (is_drawn(x) && is_drawn(y)).then_some((x, y));
+        match self.series.iter_mut().find(|(name, _)| name == series) {
+            Some((_, points)) => points.extend(point),
+            None => self
+                .series
+                .push((series.to_owned(), point.into_iter().collect())),
+        }
+    }
+
     /// Draws the plot into a file, and creates its folder if needed. Without a point to draw it writes no file.
-    ///
-    /// # Errors
-    /// If the file or its folder cannot be written.
     pub fn write_svg(&self, path: &Path) -> Result<(), Box<dyn Error>> {
-        let points = || self.series.iter().flat_map(Series::drawable);
+        let points = || self.series.iter().flat_map(|(_, points)| points);
         let (Some(x), Some(y)) = (range(points().map(|p| p.0)), range(points().map(|p| p.1)))
         else {
             return Ok(());
@@ -75,10 +75,9 @@ impl Plot {
             .y_label_formatter(&number)
             .light_line_style(TRANSPARENT)
             .draw()?;
-        for (index, series) in self.series.iter().enumerate() {
+        for (index, (name, points)) in self.series.iter().enumerate() {
             let color = COLORS[index % COLORS.len()];
-            let points: Vec<(f64, f64)> = series.drawable().collect();
-            if series.joined {
+            if self.joined {
                 let style = color.stroke_width(2);
                 chart.draw_series(std::iter::once(PathElement::new(points.clone(), style)))?;
             }
@@ -87,18 +86,10 @@ impl Plot {
             let height = 50 + 24 * index as i32;
             legend.draw(&Circle::new((10, height), 5, color.filled()))?;
             let text = ("sans-serif", 15).into_font();
-            legend.draw(&Text::new(series.name.clone(), (24, height - 8), text))?;
+            legend.draw(&Text::new(name.clone(), (24, height - 8), text))?;
         }
         root.present()?;
         Ok(())
-    }
-}
-
-impl Series {
-    fn drawable(&self) -> impl Iterator<Item = (f64, f64)> {
-        let shown = |value: f64| value.is_finite() && value > 0.0;
-        let points = self.points.iter().copied();
-        points.filter(move |(x, y)| shown(*x) && shown(*y))
     }
 }
 
@@ -129,13 +120,12 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("clamber-plot-{}", std::process::id()));
         let path = folder.join("plot.svg");
         let mut plot = Plot {
-            series: vec![Series {
-                name: "one".into(),
-                points: vec![(1.0, 2.0), (0.0, 1.0), (10.0, f64::NAN), (100.0, 3e-9)],
-                joined: true,
-            }],
+            joined: true,
             ..Plot::default()
         };
+        for point in [(1.0, 2.0), (0.0, 1.0), (10.0, f64::NAN), (100.0, 3e-9)] {
+            plot.add("one", point);
+        }
         plot.write_svg(&path).unwrap();
         let drawn = std::fs::read_to_string(&path).unwrap();
         // Two points, and one in the legend.

@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 
 /// All positions of a pose and of the previous pose, skinned by clamber's kernel: the input of every peer that skins
 /// the whole mesh.
-pub(crate) struct Skin {
+pub struct Skin {
     mesh: Arc<ColliderMesh>,
     pub(crate) positions: Vec<Vec3>,
     before: Vec<Vec3>,

@@ -9,7 +9,7 @@ use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::rig::Palette;
 use glam::{DVec3, Vec3};
 
-use crate::peer::{Answer, Entry, Nearest, Peer, RayHit, Unsupported};
+use crate::peer::{Answer, Entry, Nearest, Peer, RayHit};
 use crate::skin::Skin;
 use crate::triangle;
 
@@ -139,30 +139,13 @@ impl Peer for Thesis {
             }
             for triangle in &part.triangles {
                 let corners = self.skin.corners(*triangle as usize);
-                let found = triangle::closest_point(point, corners);
-                let distance = found.distance(point);
-                if distance <= limit {
-                    limit = distance;
-                    nearest = Some(Nearest {
-                        point: found,
-                        distance,
-                    });
-                }
+                triangle::offer(point, corners, &mut limit, &mut nearest);
             }
         }
         Ok(nearest)
     }
 
-    /// The thesis has discrete tests only.
-    fn cast_sphere(&mut self, _: &Sphere, _: Vec3) -> Answer<Option<f32>> {
-        Err(Unsupported)
-    }
-
-    fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3) {
-        self.skin.motion(triangle, barycentric)
-    }
-
-    fn bytes(&self, from_heap: usize) -> usize {
-        from_heap + self.skin.bytes_at_rest()
+    fn skin(&self) -> Option<&Skin> {
+        Some(&self.skin)
     }
 }

@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use crate::peer::Nearest;
+
 /// The point of a triangle closest to `p` (Ericson 2004, "Real-Time Collision Detection", 5.1.5).
 pub(crate) fn closest_point(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
@@ -33,6 +35,16 @@ pub(crate) fn closest_point(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     }
     let sum = va + vb + vc;
     a + ab * (vb / sum) + ac * (vc / sum)
+}
+
+/// Takes a triangle's point closest to `p` if it is within a limit, and lowers the limit to its distance.
+pub(crate) fn offer(p: Vec3, corners: [Vec3; 3], limit: &mut f32, nearest: &mut Option<Nearest>) {
+    let point = closest_point(p, corners);
+    let distance = point.distance(p);
+    if distance <= *limit {
+        *limit = distance;
+        *nearest = Some(Nearest { point, distance });
+    }
 }
 
 /// Distance along a ray at which it hits a triangle, from either side (Möller and Trumbore 1997).

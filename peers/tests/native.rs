@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use clamber_peers::{Peer, Unsupported, all, ball};
+use clamber_peers::{Peer, all, ball};
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::{JointId, Palette};
@@ -130,9 +130,8 @@ fn rays_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut Quer
         let first = surely
             .filter(|t| (truth.slack..most - truth.slack).contains(t))
             .fold(f64::INFINITY, f64::min);
-        let hit = match peer.cast_ray(&ray, max_distance) {
-            Err(Unsupported) => return,
-            Ok(hit) => hit,
+        let Ok(hit) = peer.cast_ray(&ray, max_distance) else {
+            return;
         };
         let Some(hit) = hit else {
             assert!(first.is_infinite(), "{context}: missed {first}");
@@ -161,9 +160,8 @@ fn overlaps_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut 
         let radius = f64::from(sphere.radius);
         let [least, unsure] = truth.triangles.within(center, radius, truth.slack);
         let most = least + unsure;
-        let found = match peer.overlap_sphere(&sphere) {
-            Err(Unsupported) => return,
-            Ok(found) => found,
+        let Ok(found) = peer.overlap_sphere(&sphere) else {
+            return;
         };
         assert!(
             (least..=most).contains(&found),
@@ -193,9 +191,8 @@ fn closest_points_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries:
         };
         let context = format!("{name}: {point}, {max_distance}");
         let distance = truth.triangles.distance(point.as_dvec3());
-        let found = match peer.closest_point(point, max_distance) {
-            Err(Unsupported) => return,
-            Ok(found) => found,
+        let Ok(found) = peer.closest_point(point, max_distance) else {
+            return;
         };
         let Some(found) = found else {
             assert!(
@@ -240,10 +237,10 @@ fn sphere_casts_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &
             continue;
         }
         in_touch += usize::from(latest == Some(0.0));
-        let found = match peer.cast_sphere(&sphere, motion) {
-            Err(Unsupported) => return,
-            Ok(found) => found.map(f64::from),
+        let Ok(found) = peer.cast_sphere(&sphere, motion) else {
+            return;
         };
+        let found = found.map(f64::from);
         let context = format!("{name}: {sphere:?}, {motion}: {found:?}");
         let Some(found) = found else {
             assert!(latest.is_none(), "{context}, not {latest:?}");

@@ -80,71 +80,51 @@ fn a_rider_that_stands_where_it_stood_has_no_fault() {
 }
 
 #[test]
-fn a_contact_off_its_material_point_is_drift() {
+fn a_contact_or_a_body_off_the_material_point_is_drift() {
     stood(|scene, state| {
-        let mut support = state.support.unwrap();
-        support.attachment.point += normal(&state).any_orthonormal_vector() * 2e-4;
-        let drift = scene.look(ClimberState {
-            support: Some(support),
-            ..state
-        });
-        assert!(drift.unwrap() > 1.5e-4, "drift {drift:?}");
-        assert!(scene.watch.first_fault(DRIFT).is_some());
+        let aside = normal(&state).any_orthonormal_vector();
+        let (mut beside, mut other) = (state, state);
+        beside.support.as_mut().unwrap().attachment.point += aside * 2e-4;
+        let surface = scene.battle.surface();
+        let nearest = surface.closest_point(state.position + aside * 0.5, 5.0);
+        let nearest = nearest.unwrap();
+        let attachment = &mut other.support.as_mut().unwrap().attachment;
+        (attachment.material, attachment.point) = (nearest.material, nearest.point);
+        for (what, state, least) in [
+            ("the contact is beside its point", beside, 1.5e-4),
+            ("another point, without input", other, 0.1),
+            ("a sunk body", moved(state, normal(&state) * -2e-4), 1.5e-4),
+        ] {
+            let mut scene = Scene::new(scene.battle);
+            let drift = scene.look(state).unwrap();
+            assert!(drift > least, "{what}: {drift}");
+            assert!(scene.watch.first_fault(DRIFT).is_some(), "{what}");
+        }
     });
 }
 
+/// A ball that slid touches skin, but skin that leaves it room on its point: nothing pushed it away.
 #[test]
-fn another_material_point_without_input_is_drift() {
-    stood(|scene, state| {
-        let elsewhere = state.position + normal(&state).any_orthonormal_vector() * 0.5;
-        let nearest = scene
-            .battle
-            .surface()
-            .closest_point(elsewhere, 5.0)
-            .unwrap();
-        let mut support = state.support.unwrap();
-        (support.attachment.material, support.attachment.point) = (nearest.material, nearest.point);
-        let drift = scene.look(ClimberState {
-            support: Some(support),
-            ..state
-        });
-        assert!(drift.unwrap() > 0.1, "drift {drift:?}");
-    });
-}
-
-#[test]
-fn a_body_sunk_into_its_point_is_drift() {
-    stood(|scene, state| {
-        let drift = scene.look(moved(state, normal(&state) * -2e-4));
-        assert!(drift.unwrap() > 1.5e-4, "drift {drift:?}");
-    });
-}
-
-#[test]
-fn a_body_that_floats_stands_off_and_is_not_pushed() {
-    stood(|scene, state| {
-        scene.look(moved(state, normal(&state) * 0.011));
-        let watch = &scene.watch;
-        assert!(watch.stands_off > MAX_STANDS_OFF, "{}", watch.stands_off);
-        assert_eq!(watch.pushed_off, 0.0);
-        assert!(watch.first_fault(STANDS_OFF).is_some());
-        assert!(watch.first_fault(DRIFT).is_none());
-    });
-}
-
-/// The ball touches skin, but skin that leaves it room on its point: nothing pushed it away.
-#[test]
-fn a_body_that_slid_along_open_skin_stands_off_and_is_not_pushed() {
+fn a_body_that_floats_or_slid_along_open_skin_stands_off_and_is_not_pushed() {
     stood(|scene, state| {
         let surface = scene.battle.surface();
         let radius = scene.battle.climber().config().body.radius;
         let aside = state.position + normal(&state).any_orthonormal_vector() * 0.3;
         let under = surface.closest_point(aside, 5.0).unwrap();
         let place = under.point + under.separation_normal(aside) * radius;
-        scene.look(moved(state, place - state.position));
-        let watch = &scene.watch;
-        assert!(watch.stands_off > MAX_STANDS_OFF, "{}", watch.stands_off);
-        assert_eq!(watch.pushed_off, 0.0);
+        for (what, by) in [
+            ("floats", normal(&state) * 0.011),
+            ("slid", place - state.position),
+        ] {
+            let mut scene = Scene::new(scene.battle);
+            scene.look(moved(state, by));
+            let watch = &scene.watch;
+            let off = watch.stands_off;
+            assert!(off > MAX_STANDS_OFF, "{what}: {off}");
+            assert_eq!(watch.pushed_off, 0.0, "{what}");
+            assert!(watch.first_fault(STANDS_OFF).is_some(), "{what}");
+            assert!(watch.first_fault(DRIFT).is_none(), "{what}");
+        }
     });
 }
 

@@ -35,13 +35,13 @@ fn won(animal: &str, seeds: u64) -> Option<u64> {
         };
         let mut battle = Battle::new(&creature, &options).unwrap();
         let mut ticks = 0..options.ticks();
-        while battle.counts().killed == 0
+        while battle.counts.killed == 0
             && let Some(tick) = ticks.next()
         {
             battle.step(options.input_at(tick)).unwrap();
         }
-        println!("{animal:<16} seed {seed}: {:?}", battle.counts());
-        u64::from(battle.counts().killed > 0)
+        println!("{animal:<16} seed {seed}: {:?}", battle.counts);
+        u64::from(battle.counts.killed > 0)
     };
     let kills = &kills;
     std::thread::scope(|scope| {

@@ -18,7 +18,7 @@ fn stand(creature: &Creature, height: f64, seed: u64, seconds: u32) -> Watch {
         battle.step(Intent::Stand).unwrap();
         watch.tick(&battle);
     }
-    let counts = battle.counts();
+    let counts = &battle.counts;
     assert_eq!(counts.drops, 1, "seed {seed}: fell to the ground");
     assert_eq!(counts.landings, 1, "seed {seed}: lost its footing");
     watch

@@ -21,13 +21,13 @@ fn with_battle<R>(rocks: u32, test: impl FnOnce(&mut Battle<'_>) -> R) -> R {
 /// Moves the first rock to a place, spinning and fast, and steps once. Returns its speed, its spin and its distance
 /// from the climber.
 fn throw_a_rock(battle: &mut Battle<'_>, to: DVec3) -> [f64; 3] {
-    let rock = battle.rocks().bodies()[0];
-    let body = &mut battle.world_mut().bodies[rock];
+    let rock = battle.rocks.bodies()[0];
+    let body = &mut battle.world.bodies[rock];
     body.set_translation(to.as_vec3(), true);
     body.set_linvel(Vector::new(30.0, -50.0, 0.0), true);
     body.set_angvel(Vector::new(0.0, 200.0, 0.0), true);
     battle.step(Intent::Stand).unwrap();
-    let body = &battle.world().bodies[rock];
+    let body = &battle.world.bodies[rock];
     let place = body.translation().as_dvec3();
     [
         f64::from(body.linvel().length()),
@@ -39,10 +39,10 @@ fn throw_a_rock(battle: &mut Battle<'_>, to: DVec3) -> [f64; 3] {
 #[test]
 fn a_rock_out_of_the_valley_is_counted_apart_and_falls_again_from_rest() {
     with_battle(3, |battle| {
-        let drops = battle.rocks().drops;
+        let drops = battle.rocks.drops;
         let out = DVec3::new(valley::SIZE, -20.0, 0.0);
         let [speed, spin, away] = throw_a_rock(battle, out);
-        let rocks = battle.rocks();
+        let rocks = &battle.rocks;
         assert_eq!((rocks.left, rocks.faults.len()), (1, 0));
         assert_eq!(rocks.drops, drops + 1);
         assert!(
@@ -63,7 +63,7 @@ fn a_rock_under_the_ground_is_a_fault_and_counts_once() {
             battle.step(Intent::Stand).unwrap();
             watch.tick(battle);
         }
-        assert_eq!((battle.rocks().left, watch.rocks_inside), (0, 1));
+        assert_eq!((battle.rocks.left, watch.rocks_inside), (0, 1));
         let cause = watch.first_fault(ROCKS_INSIDE).unwrap();
         assert!(cause.contains("rock 0 below the ground"), "{cause}");
     });
@@ -91,7 +91,7 @@ fn a_rider_out_of_the_valley_is_dropped_again_with_the_velocity_of_the_creature_
             let before = battle.surface().world_from_model().translation;
             battle.step(Intent::Stand).unwrap();
             watch.tick(battle);
-            assert_eq!((battle.counts().drops, watch.falls), (falls + 1, falls));
+            assert_eq!((battle.counts.drops, watch.falls), (falls + 1, falls));
             let state = battle.climber().state();
             let moved = battle.surface().world_from_model().translation - before;
             assert_eq!(state.velocity, moved / TICK);
@@ -149,7 +149,7 @@ fn a_climber_that_dies_or_is_lost_begins_again() {
         // It lies for a while first, or falls.
         let begins_again = (0..600).any(|_| {
             battle.step(Intent::Stand).unwrap();
-            battle.counts().deaths == deaths
+            battle.counts.deaths == deaths
         });
         assert!(begins_again, "{deaths}");
         assert_eq!(*battle.climber().state(), start);
@@ -172,7 +172,7 @@ fn the_brain_of_a_file_decides_what_the_giant_does() {
     }
     // Nothing shakes it off.
     assert!(highest > 15.0, "{highest}");
-    let counts = battle.counts();
+    let counts = &battle.counts;
     assert_eq!((counts.blows, counts.deaths), (0, 0));
 }
 

@@ -23,7 +23,7 @@ fn add(run: &mut GoldenRun, battle: &Battle<'_>) {
     run.field("climber", battle.climber().state().fingerprint());
     run.fields("its ", battle.climber().state());
     run.field("creature", palette_fingerprint(battle.palette()));
-    run.field("rocks", battle.rocks_fingerprint());
+    run.field("rocks", battle.rocks_fingerprint);
     run.field("rocks and fight", battle.scene_fingerprint());
     run.end_tick();
 }

@@ -15,7 +15,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
 use thiserror::Error;
 
 use crate::figure::sole_height;
-use crate::humanoid::reference;
+use crate::humanoid::{depth, reference};
 use crate::{Humanoid, Limb, LimbEnd};
 
 /// Keys of a carried clip, per second.
@@ -117,18 +117,13 @@ impl<'a> Retarget<'a> {
             beside: Vec::new(),
         };
         retarget.add_trunk(source, target);
-        for (from, to) in source.arms.iter().zip(&target.arms) {
-            retarget.add_limb(from, to, [source.facing, target.facing]);
-        }
-        for (from, to) in source.legs.iter().zip(&target.legs) {
+        let limbs = target.arms.iter().chain(&target.legs);
+        for (from, to) in source.arms.iter().chain(&source.legs).zip(limbs) {
             retarget.add_limb(from, to, [source.facing, target.facing]);
         }
         // Parents before children, so that a joint's parent is known when the joint is turned.
-        let depth = |joint: JointId| {
-            let parent = |joint: &JointId| to.joints()[joint.index()].parent;
-            core::iter::successors(Some(joint), parent).count()
-        };
-        retarget.bones.sort_by_key(|bone| (depth(bone.to), bone.to));
+        let bones = &mut retarget.bones;
+        bones.sort_by_key(|bone| (depth(to, bone.to), bone.to));
         Ok(retarget)
     }
 
@@ -144,7 +139,11 @@ impl<'a> Retarget<'a> {
             .map(|key| (duration * key as f64 / (keys - 1) as f64) as f32)
             .collect();
         let rest = self.from.rest_pose();
-        let moved = self.moved_joints();
+        let mut moved: Vec<JointId> = self.bones.iter().map(|bone| bone.to).collect();
+        moved.extend(self.beside.iter().map(|beside| beside.foot));
+        moved.extend(&self.turned);
+        moved.sort_unstable();
+        moved.dedup();
         let mut rotations: Vec<Vec<Quat>> = vec![Vec::with_capacity(keys); moved.len()];
         let mut translations: Vec<Vec<Vec3>> = rotations.iter().map(|_| Vec::new()).collect();
         for time in &times {
@@ -225,16 +224,6 @@ impl<'a> Retarget<'a> {
         Ok(pose)
     }
 
-    /// The target's joints that a carried clip has channels for.
-    fn moved_joints(&self) -> Vec<JointId> {
-        let mut moved: Vec<JointId> = self.bones.iter().map(|bone| bone.to).collect();
-        moved.extend(self.beside.iter().map(|beside| beside.foot));
-        moved.extend(&self.turned);
-        moved.sort_unstable();
-        moved.dedup();
-        moved
-    }
-
     fn model_from_parent(&self, pose: &Pose, joint: JointId) -> DAffine3 {
         let mut model = DAffine3::IDENTITY;
         let mut next = self.to.joints()[joint.index()].parent;
@@ -305,35 +294,22 @@ impl<'a> Retarget<'a> {
 
     fn add_limb(&mut self, from: &Limb, to: &Limb, facing: [DVec3; 2]) {
         let place = |rest: &[DAffine3], joint: JointId| rest[joint.index()].translation;
-        let tip = |rest: &[DAffine3], limb: &Limb| match limb.end {
-            LimbEnd::Joint(joint) | LimbEnd::Beside(joint, _) => place(rest, joint),
-            LimbEnd::Point(point) => rest[limb.lower.index()].transform_point3(point),
-        };
         let bones = |rest: &[DAffine3], limb: &Limb| {
             let [shoulder, elbow] = [limb.upper, limb.lower].map(|joint| place(rest, joint));
             let collar = limb
                 .shoulder
                 .map_or(DVec3::ZERO, |joint| shoulder - place(rest, joint));
-            [collar, elbow - shoulder, tip(rest, limb) - elbow]
+            let tip = limb.end.place(limb.lower, rest);
+            [collar, elbow - shoulder, tip - elbow]
         };
         let (source, target) = (bones(&self.bound[0], from), bones(&self.bound[1], to));
         if let (Some(a), Some(b)) = (from.shoulder, to.shoulder) {
             self.add([a; 2], 0.0, b, [source[0], target[0]], facing);
         }
-        self.add(
-            [from.upper; 2],
-            0.0,
-            to.upper,
-            [source[1], target[1]],
-            facing,
-        );
-        self.add(
-            [from.lower; 2],
-            0.0,
-            to.lower,
-            [source[2], target[2]],
-            facing,
-        );
+        let bones = [(from.upper, to.upper, 1), (from.lower, to.lower, 2)];
+        for (from, to, bone) in bones {
+            self.add([from; 2], 0.0, to, [source[bone], target[bone]], facing);
+        }
         if let LimbEnd::Beside(foot, point) = to.end {
             let lower = to.lower;
             self.beside.push(Beside { lower, point, foot });
@@ -419,7 +395,8 @@ pub(crate) fn check(body: &Humanoid, skeleton: &Skeleton) -> Result<(), RigError
     }
 }
 
-fn feet(body: &Humanoid) -> [JointId; 2] {
+/// The joints at which the legs end.
+pub(crate) fn feet(body: &Humanoid) -> [JointId; 2] {
     let legs = [&body.legs[0], &body.legs[1]];
     legs.map(|leg| leg.end.joint().unwrap_or(leg.lower))
 }

@@ -202,20 +202,17 @@ fn arenas(
 /// Returns the next tick that both recordings have, `None` after the last one. Either may have gaps: the ticks that
 /// only one of them has are counted in `met`.
 fn both<T>(
-    [first, second]: [&mut dyn Iterator<Item = Result<T, RecordError>>; 2],
+    ticks: [&mut dyn Iterator<Item = Result<T, RecordError>>; 2],
     options: &CompareOptions,
     number: impl Fn(&T) -> u64,
     met: &mut Met,
 ) -> Result<Option<(T, T)>, CompareError> {
-    let mut one = || {
-        let tick = first.next().transpose();
-        tick.map_err(|error| failed(&options.first, error))
+    let paths = [&options.first, &options.second];
+    let mut next = |index: usize| {
+        let tick = ticks[index].next().transpose();
+        tick.map_err(|error| failed(paths[index], error))
     };
-    let mut other = || {
-        let tick = second.next().transpose();
-        tick.map_err(|error| failed(&options.second, error))
-    };
-    let (mut ours, mut theirs) = (one()?, other()?);
+    let (mut ours, mut theirs) = (next(0)?, next(1)?);
     loop {
         match (ours, theirs) {
             (Some(a), Some(b)) if number(&a) == number(&b) => {
@@ -225,20 +222,20 @@ fn both<T>(
             (Some(a), Some(b)) if number(&a) < number(&b) => {
                 met.alone[0] += 1;
                 met.has_gaps = true;
-                (ours, theirs) = (one()?, Some(b));
+                (ours, theirs) = (next(0)?, Some(b));
             }
             (Some(a), Some(_)) => {
                 met.alone[1] += 1;
                 met.has_gaps = true;
-                (ours, theirs) = (Some(a), other()?);
+                (ours, theirs) = (Some(a), next(1)?);
             }
             (Some(_), None) => {
                 met.alone[0] += 1;
-                (ours, theirs) = (one()?, None);
+                (ours, theirs) = (next(0)?, None);
             }
             (None, Some(_)) => {
                 met.alone[1] += 1;
-                (ours, theirs) = (None, other()?);
+                (ours, theirs) = (None, next(1)?);
             }
             (None, None) => return Ok(None),
         }
@@ -285,44 +282,29 @@ pub fn print(options: &CompareOptions) -> Result<bool, CompareError> {
             println!("{}: {lost} ticks are left out at its end", path.display());
         }
     }
-    Ok(match compare(options)? {
-        Comparison::Equal(ticks) => {
-            println!("all {ticks} ticks are equal in every bit");
-            true
-        }
+    let compared = compare(options)?;
+    match &compared {
+        Comparison::Equal(ticks) => println!("all {ticks} ticks are equal in every bit"),
         Comparison::Shorter(ticks) => {
             println!("{ticks} ticks are equal in every bit; then one recording ends");
-            false
         }
         Comparison::Partly {
             equal,
             alone: [first, second],
-        } => {
-            println!(
-                "{equal} ticks are in both, and equal in every bit; {first} are only in the first recording and {second} \
-                 only in the second: a recorder whose disk is too slow leaves ticks out"
-            );
-            false
-        }
-        Comparison::Differ(difference) => {
-            print!("{difference}");
-            false
-        }
-        Comparison::ArenasDiffer(difference) => {
-            println!("{difference}");
-            false
-        }
+        } => println!(
+            "{equal} ticks are in both, and equal in every bit; {first} are only in the first recording and {second} \
+             only in the second: a recorder whose disk is too slow leaves ticks out"
+        ),
+        Comparison::Differ(difference) => print!("{difference}"),
+        Comparison::ArenasDiffer(difference) => println!("{difference}"),
         Comparison::OrdersDiffer { tick } => {
             println!(
                 "the orders of the step to tick {tick} differ; what both have before is equal"
             );
-            false
         }
-        Comparison::InputsDiffer { tick, fighter } => {
-            println!(
-                "the input of {fighter} for the step to tick {tick} differs; what both have before is equal"
-            );
-            false
-        }
-    })
+        Comparison::InputsDiffer { tick, fighter } => println!(
+            "the input of {fighter} for the step to tick {tick} differs; what both have before is equal"
+        ),
+    }
+    Ok(matches!(compared, Comparison::Equal(_)))
 }

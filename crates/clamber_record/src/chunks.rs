@@ -67,10 +67,8 @@ impl<D: Send + 'static, W: Send + 'static> Chunks<D, W> {
             writing.finish()
         };
         let named = std::thread::Builder::new().name("clamber_record".to_owned());
-        let handle = named.spawn(work).map_err(|source| RecordError::Io {
-            what: "cannot start the thread that writes the recording".to_owned(),
-            source,
-        })?;
+        let failed = RecordError::io("cannot start the thread that writes the recording");
+        let handle = named.spawn(work).map_err(failed)?;
         Ok(Self {
             size: chunk_ticks.max(1) as usize,
             last: None,

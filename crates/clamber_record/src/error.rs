@@ -128,6 +128,20 @@ pub enum RecordError {
     NoSnapshot(u64),
 }
 
+impl RecordError {
+    /// A function that adds to a system's error what failed.
+    pub(crate) fn io(what: impl Into<String>) -> impl FnOnce(io::Error) -> Self {
+        let what = what.into();
+        move |source| Self::Io { what, source }
+    }
+
+    /// A message that cannot be encoded, and why.
+    pub(crate) fn encode(topic: &'static str, reason: impl ToString) -> Self {
+        let reason = reason.to_string();
+        Self::Encode { topic, reason }
+    }
+}
+
 /// The text of an MCAP error. mcap's own text for I/O errors leaves out the system's message.
 fn reason(error: &mcap::McapError) -> String {
     match error {

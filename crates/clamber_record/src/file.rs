@@ -103,10 +103,9 @@ impl From<std::io::Error> for Stop {
 pub(crate) fn open(path: &Path) -> Result<Contents, RecordError> {
     let bytes = Bytes::open(path)?;
     read(bytes).map_err(|error| match error {
-        RecordError::Io { source, .. } => RecordError::Io {
-            what: format!("cannot read {}", path.display()),
-            source,
-        },
+        RecordError::Io { source, .. } => {
+            RecordError::io(format!("cannot read {}", path.display()))(source)
+        }
         other => other,
     })
 }
@@ -142,10 +141,7 @@ pub(crate) fn read(bytes: Bytes) -> Result<Contents, RecordError> {
 }
 
 fn failed(source: std::io::Error) -> RecordError {
-    RecordError::Io {
-        what: "the recording cannot be read".to_owned(),
-        source,
-    }
+    RecordError::io("the recording cannot be read")(source)
 }
 
 /// Results of the walk so far.

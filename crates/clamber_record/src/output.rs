@@ -112,11 +112,8 @@ impl<W: Write> Output<W> {
                 .iter()
                 .map(|(key, value)| key.len() + value.len() + TEXTS);
             if sizes.sum::<usize>() as u64 + MORE > METADATA {
-                return Err(RecordError::Encode {
-                    topic: "metadata",
-                    reason: "names and settings are more than 16 MiB, which no reader takes"
-                        .to_owned(),
-                });
+                let reason = "names and settings are more than 16 MiB, which no reader takes";
+                return Err(RecordError::encode("metadata", reason));
             }
             let name = name.to_owned();
             writer.write_metadata(&Metadata { name, metadata })?;
@@ -146,10 +143,8 @@ impl<W: Write> Output<W> {
         topic: &'static str,
         name: &str,
     ) -> Result<Channel, RecordError> {
-        let schema = M::get_schema().ok_or_else(|| RecordError::Encode {
-            topic,
-            reason: "it has no schema".to_owned(),
-        })?;
+        let schema = M::get_schema();
+        let schema = schema.ok_or_else(|| RecordError::encode(topic, "it has no schema"))?;
         let writer = self.writer()?;
         let schema = writer.add_schema(&schema.name, &schema.encoding, &schema.data)?;
         let encoding = M::get_message_encoding();
@@ -193,16 +188,11 @@ impl<W: Write> Output<W> {
         encode: impl FnOnce(&mut Vec<u8>) -> Result<(), String>,
     ) -> Result<(), RecordError> {
         self.buffer.clear();
-        encode(&mut self.buffer).map_err(|reason| RecordError::Encode {
-            topic: channel.topic,
-            reason,
-        })?;
+        encode(&mut self.buffer).map_err(|reason| RecordError::encode(channel.topic, reason))?;
         self.chunk += self.buffer.len() as u64 + MORE;
         if self.chunk > LARGEST - MORE {
-            return Err(RecordError::Encode {
-                topic: channel.topic,
-                reason: "a tick takes more than 512 MiB, which no reader takes".to_owned(),
-            });
+            let reason = "a tick takes more than 512 MiB, which no reader takes";
+            return Err(RecordError::encode(channel.topic, reason));
         }
         let header = MessageHeader {
             channel_id: channel.id,
@@ -252,10 +242,8 @@ impl<W: Write> Output<W> {
         let mut writer = self.writer.take().ok_or(RecordError::Ended)?;
         writer.finish()?;
         let mut out = writer.into_inner().into_inner().out;
-        out.flush().map_err(|source| RecordError::Io {
-            what: "cannot write the end of the recording".to_owned(),
-            source,
-        })?;
+        let failed = RecordError::io("cannot write the end of the recording");
+        out.flush().map_err(failed)?;
         Ok(out)
     }
 }

@@ -163,9 +163,6 @@ impl<K: RecordingKind, W: Write> RecorderOf<K, W> {
 
 /// Creates a file. An existing file at that path is overwritten.
 pub(crate) fn create(path: &Path) -> Result<BufWriter<File>, RecordError> {
-    let file = File::create(path).map_err(|source| RecordError::Io {
-        what: format!("cannot create {}", path.display()),
-        source,
-    })?;
-    Ok(BufWriter::new(file))
+    let failed = RecordError::io(format!("cannot create {}", path.display()));
+    Ok(BufWriter::new(File::create(path).map_err(failed)?))
 }

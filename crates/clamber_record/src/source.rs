@@ -54,11 +54,8 @@ pub(crate) struct Place {
 
 impl Bytes {
     pub(crate) fn open(path: &Path) -> Result<Self, RecordError> {
-        let file = File::open(path).map_err(|source| RecordError::Io {
-            what: format!("cannot read {}", path.display()),
-            source,
-        })?;
-        Ok(Self::File(Mutex::new(file)))
+        let failed = RecordError::io(format!("cannot read {}", path.display()));
+        Ok(Self::File(Mutex::new(File::open(path).map_err(failed)?)))
     }
 
     fn read(&self, place: ChunkPlace) -> std::io::Result<Vec<u8>> {

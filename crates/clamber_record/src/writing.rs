@@ -85,10 +85,7 @@ impl<W: Write> Sheet<W> {
         (mesh, matrices): (&ColliderMesh, &[Affine]),
     ) -> Result<PointCloud, RecordError> {
         let posed = skin_into(mesh, matrices, &mut self.positions);
-        posed.map_err(|error| RecordError::Encode {
-            topic: topics::SKIN,
-            reason: error.to_string(),
-        })?;
+        posed.map_err(|error| RecordError::encode(topics::SKIN, error))?;
         Ok(skin(now, frame, (mesh, &self.positions), self.skin_points))
     }
 }
@@ -113,15 +110,12 @@ impl<E: EncodeTick, W: Write> Writing<E, W> {
     fn states(&self, taken: &mut Taken<E::Data>) -> Result<Vec<Saved>, RecordError> {
         let tick = taken.tick;
         let states = taken.saved.drain(..);
-        let states = states.map(|TakenState(state)| match state() {
-            Ok(state) => Ok(Saved {
+        let states = states.map(|TakenState(state)| {
+            let state = state().map(|state| Saved {
                 tick,
                 state: state.into(),
-            }),
-            Err(reason) => Err(RecordError::Encode {
-                topic: self.sheet.saved.topic(),
-                reason,
-            }),
+            });
+            state.map_err(|reason| RecordError::encode(self.sheet.saved.topic(), reason))
         });
         states.collect()
     }

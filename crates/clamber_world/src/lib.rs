@@ -13,6 +13,8 @@ mod rigid_pose;
 #[cfg(feature = "parry")]
 pub mod shapes;
 mod surface;
+#[cfg(test)]
+mod testing;
 mod triangle_terrain;
 
 pub use attachment::{Attachment, Continuity, Followed};

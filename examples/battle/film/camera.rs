@@ -55,7 +55,7 @@ impl Views {
         let camera = match self.kind {
             CameraKind::Orbit => {
                 let heading = 0.6 + ORBIT * TICK * battle.tick() as f64;
-                orbit(battle, battle.height(), heading)
+                orbit(battle, battle.height, heading)
             }
             CameraKind::Close => self.chase(battle, &skin, CLOSE),
             CameraKind::Chase => self.chase(battle, &skin, CHASE),

@@ -6,10 +6,12 @@ mod overlays;
 use std::path::PathBuf;
 
 use clamber::glam::DVec3;
-use clamber::render::{Frame, Gif, Gpu, Overlay, Renderer};
+use clamber::gltf::VisualMesh;
+use clamber::render::{Drawn, Frame, Gif, Gpu, Look, Overlay, RenderError, RenderMeshId, Renderer};
+use clamber::world::rapier3d::dynamics::RigidBodyHandle;
 use clamber_scenes::battle::{Battle, BattleOptions, TICK};
 use clamber_scenes::giant;
-use clamber_scenes::picture::{Stage, add_visual, light};
+use clamber_scenes::picture::{Stage, add_plain, add_visual, light, sharp};
 
 use crate::Failure;
 use crate::options::{FilmOptions, OverlayKind};
@@ -25,6 +27,9 @@ const ARROW: f64 = 0.8;
 pub(crate) struct Film {
     renderer: Renderer,
     stage: Stage,
+    rocks: Vec<(RigidBodyHandle, RenderMeshId)>,
+    /// Those of the creature's meshes that are plates, with the numbers by which its brain names them.
+    plates: Vec<(RenderMeshId, u32)>,
     views: Views,
     overlays: Vec<OverlayKind>,
     /// Path of the climber's centre in the last ticks.
@@ -46,7 +51,10 @@ impl Film {
         let path = battle.creature.clone().unwrap_or_else(giant::path);
         let rig = clamber::gltf::load(path)?;
         let creature = add_visual(&mut renderer, &rig)?;
-        let stage = Stage::new(&mut renderer, creature)?.with_plates(&rig);
+        let user = |mesh: &VisualMesh| mesh.primitives.first().map_or(0, |first| first.tag.user);
+        let plates = creature.iter().copied().zip(rig.visual.iter().map(user));
+        let plates = plates.filter(|(_, user)| *user > 0).collect();
+        let stage = Stage::new(&mut renderer, creature)?;
         if let Some(folder) = &film.frames {
             let failed = |error| format!("{}: {error}", folder.display());
             std::fs::create_dir_all(folder).map_err(failed)?;
@@ -58,6 +66,8 @@ impl Film {
         Ok(Self {
             renderer,
             stage,
+            rocks: Vec::new(),
+            plates,
             views: Views::new(film.camera),
             overlays: film.overlay.clone(),
             way: Vec::new(),
@@ -67,6 +77,37 @@ impl Film {
             from: (film.from / TICK) as u64,
             taken: 0,
         })
+    }
+}
+
+impl Film {
+    /// Draws the battle's rocks from now on.
+    fn add_rocks(&mut self, battle: &Battle<'_>) -> Result<(), RenderError> {
+        let meshes = battle.rocks.meshes(&battle.world);
+        for (number, (rock, mesh)) in meshes.into_iter().enumerate() {
+            let shade = 0.24 + 0.03 * (number % 5) as f32;
+            let color = [shade, shade * 0.95, shade * 0.86];
+            // Round shapes have so many triangles that their edges may be shaded smoothly.
+            let mesh = if mesh.1.len() <= 12 {
+                sharp(&mesh)
+            } else {
+                mesh
+            };
+            let mesh = add_plain(&mut self.renderer, &mesh, color, Look::Stone)?;
+            self.rocks.push((rock, mesh));
+        }
+        Ok(())
+    }
+
+    /// True unless a mesh is a plate that is broken.
+    fn is_whole(&self, mesh: RenderMeshId, battle: &Battle<'_>) -> bool {
+        let plate = self.plates.iter().find(|(id, _)| *id == mesh);
+        let (Some((_, user)), Some(life)) = (plate, battle.life()) else {
+            return true;
+        };
+        let files = &life.kind().brain().file().body.plates;
+        let index = files.iter().position(|file| file.user == *user);
+        index.is_none_or(|index| life.state().plate(index) > 0)
     }
 }
 
@@ -85,12 +126,19 @@ impl crate::Camera for Film {
             return Ok(());
         }
         if self.taken == 0 {
-            self.stage.add_rocks(&mut self.renderer, battle)?;
+            self.add_rocks(battle)?;
         }
-        let drawn = self.stage.drawn(battle, battle.palette());
+        let rocks = self.rocks.iter().map(|(rock, mesh)| Drawn {
+            mesh: *mesh,
+            world_from_model: battle.placed(*rock),
+            palette: None,
+        });
+        let others = self.stage.drawn(battle, battle.palette()).into_iter();
+        let others = others.filter(|drawn| self.is_whole(drawn.mesh, battle));
+        let drawn = rocks.chain(others).collect();
         let mut overlay = overlays::draw(&self.overlays, battle, camera.eye, &self.way);
         arrows(&mut overlay, battle);
-        let light = light(battle, battle.height());
+        let light = light(battle, battle.height);
         let mut image = self.renderer.draw(&Frame {
             camera,
             light,

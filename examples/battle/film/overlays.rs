@@ -79,7 +79,7 @@ impl Pen<'_> {
     /// stays at the same pixel.
     fn near(&self, place: DVec3, share: f64) -> DVec3 {
         let way = place - self.eye;
-        let by = share * self.battle.height() / way.length();
+        let by = share * self.battle.height / way.length();
         self.eye + way * (1.0 - by.min(0.5))
     }
 
@@ -95,7 +95,7 @@ impl Pen<'_> {
             let frame = pen.battle.palette().model_from_joint(joint)?;
             Some(pen.near(root.transform_point(frame.translation), THROUGH))
         };
-        for (index, joint) in (0..).zip(self.battle.creature().rig.skeleton.joints()) {
+        for (index, joint) in (0..).zip(self.battle.creature.rig.skeleton.joints()) {
             let parent = joint.parent.and_then(|parent| place(self, parent));
             if let (Some(from), Some(to)) = (parent, place(self, JointId(index))) {
                 self.over.line(from, to, 3.0, YELLOW);
@@ -198,7 +198,7 @@ fn state(battle: &Battle<'_>) -> String {
     let state = battle.climber().state();
     let motion = own_point(battle).and_then(|point| battle.surface().motion(&point, TICK));
     let speed = (state.velocity - motion.map_or(DVec3::ZERO, |motion| motion.velocity)).length();
-    let skinned = battle.skinned();
+    let skinned = &battle.skinned;
     let share = 100.0 * skinned.vertices_skinned as f64 / skinned.vertices.max(1) as f64;
     // A share from 0 to 1 as a bar.
     let bar = |share: f64| format!("[{:<20}]", "#".repeat((share * 20.0).ceil() as usize));

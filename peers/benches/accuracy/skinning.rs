@@ -10,10 +10,11 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use clamber_scenes::giant::giant_of;
-use clamber_scenes::measure::{Table, measure_folder, median_us, quantile};
+use clamber_scenes::measure::{Table, median_us, quantile};
 use clamber_surface::geometry::Affine;
+use clamber_surface::measure::skin_vertex_reference;
 use clamber_surface::mesh::{ColliderMesh, VertexId};
-use clamber_surface::rig::{Palette, Playback};
+use clamber_surface::rig::Palette;
 use glam::{DVec3, Vec3};
 
 /// Number of vertices in a cluster.
@@ -139,25 +140,15 @@ impl<W: Stored, P: Stored> Mesh<W, P> {
 
     fn add(&mut self, mesh: &ColliderMesh, influences: &[Vec<(u32, f32)>], members: &[u32]) {
         let place = |v: u32| mesh.positions()[v as usize];
-        let low = members
-            .iter()
-            .map(|v| place(*v))
-            .fold(Vec3::INFINITY, Vec3::min);
-        let high = members
-            .iter()
-            .map(|v| place(*v))
-            .fold(Vec3::NEG_INFINITY, Vec3::max);
+        let places = members.iter().map(|v| place(*v));
+        let low = places.clone().fold(Vec3::INFINITY, Vec3::min);
+        let high = places.fold(Vec3::NEG_INFINITY, Vec3::max);
         // Full precision needs no centre.
-        let exact = P::ONE == 1.0;
-        let center = if exact {
-            Vec3::ZERO
+        let (center, half) = if P::ONE == 1.0 {
+            (Vec3::ZERO, 1.0)
         } else {
-            (low + high) * 0.5
-        };
-        let half = if exact {
-            1.0
-        } else {
-            ((high - low) * 0.5).max_element().max(1e-6)
+            let half = ((high - low) * 0.5).max_element().max(1e-6);
+            ((low + high) * 0.5, half)
         };
         let mut joints: Vec<u32> = members
             .iter()
@@ -254,15 +245,9 @@ impl<W: Stored, P: Stored> Mesh<W, P> {
 
 /// The true positions: skinned with all influences, in f64.
 fn truth(mesh: &ColliderMesh, palette: &Palette) -> Vec<DVec3> {
-    let matrices: Vec<_> = palette.matrices().iter().map(Affine::to_f64).collect();
-    let vertex = |v: usize| {
-        let p = mesh.positions()[v].as_dvec3();
-        let influences = mesh.influences(VertexId(v as u32));
-        influences.fold(DVec3::ZERO, |sum, (joint, weight)| {
-            sum + matrices[joint.0 as usize].transform_point3(p) * f64::from(weight)
-        })
-    };
-    (0..mesh.positions().len()).map(vertex).collect()
+    let vertices = (0..mesh.positions().len() as u32).map(VertexId);
+    let place = |vertex| skin_vertex_reference(mesh, palette.matrices(), vertex);
+    vertices.filter_map(place).collect()
 }
 
 /// Measures all variants.
@@ -272,12 +257,11 @@ pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     for &vertices in sizes {
         let giant = giant_of(vertices)?;
         let mesh = &giant.rig.collider;
-        let walk = giant.clip_like(&["walk"]).ok_or("the giant cannot walk")?;
+        let walk = giant.rig.clip("walk").ok_or("the giant cannot walk")?;
         let mut poses = Vec::new();
         for pose in 0..POSES {
             let time = walk.duration() * pose as f64 / POSES as f64;
-            let pose = walk.sample(&giant.rig.skeleton.rest_pose(), time, Playback::Loop)?;
-            let palette = giant.rig.skeleton.palette(&pose)?;
+            let palette = giant.palette("walk", time)?;
             let truth = truth(mesh, &palette);
             poses.push((palette, truth));
         }
@@ -293,11 +277,7 @@ pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
         way::<u8, i16>(mesh, all, &poses, brief, &mut table);
     }
     println!("\n{table}");
-    let brief = if brief { "_brief" } else { "" };
-    let path = measure_folder().join(format!("accuracy_skinning{brief}.csv"));
-    table.write_csv(&path)?;
-    println!("written to {}", path.display());
-    Ok(())
+    Ok(table.write("accuracy_skinning", brief)?)
 }
 
 fn way<W: Stored, P: Stored>(

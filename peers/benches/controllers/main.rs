@@ -39,20 +39,14 @@ use std::error::Error;
 use std::process::ExitCode;
 
 use clamber_scenes::controllers::{Outcome, all, play};
-use clamber_scenes::measure::is_brief;
+use clamber_scenes::measure::{exit_code, is_brief};
 use report::Report;
 
 /// Largest number of ticks of a scene in a brief run.
 const BRIEF: u32 = 600;
 
 fn main() -> ExitCode {
-    match run(is_brief()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(is_brief()))
 }
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
@@ -72,7 +66,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
                 wrong.push(format!("{}, {}", scene.name, entry.name));
             }
         }
-        report.add(&scene, &entries, &outcomes);
+        report.add(&scene, &outcomes);
     }
     report.finish(brief)?;
     if wrong.is_empty() {

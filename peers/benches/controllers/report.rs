@@ -4,7 +4,7 @@
 use std::error::Error;
 
 use clamber_scenes::controllers::{Outcome, Scene};
-use clamber_scenes::measure::{Bound, Cells, Table, measure_folder, quantile};
+use clamber_scenes::measure::{Bound, Cells, Table, quantile};
 
 use crate::controller::Entry;
 
@@ -24,29 +24,24 @@ const COLUMNS: [&str; 8] = [
 pub(crate) struct Report {
     read: Table,
     computed: Table,
-    /// For each controller, the number of scenes passed, and the microseconds of a tick in each scene.
-    sums: Vec<(usize, Vec<f64>)>,
-    /// Names of the controllers.
-    names: Vec<&'static str>,
+    /// For each controller, the name, the number of scenes passed, and the microseconds of a tick in each scene.
+    sums: Vec<(&'static str, usize, Vec<f64>)>,
 }
 
 impl Report {
     pub(crate) fn new(entries: &[Entry]) -> Self {
         let names = entries.iter().map(|entry| entry.name);
-        let columns: Vec<&str> = ["scenario", "scene", "asked"]
-            .into_iter()
-            .chain(names)
-            .collect();
+        let columns = ["scenario", "scene", "asked"];
+        let columns: Vec<&str> = columns.into_iter().chain(names.clone()).collect();
         Self {
             read: Table::new(&columns),
             computed: Table::new(&COLUMNS),
-            sums: vec![(0, Vec::new()); entries.len()],
-            names: entries.iter().map(|entry| entry.name).collect(),
+            sums: names.map(|name| (name, 0, Vec::new())).collect(),
         }
     }
 
     /// Adds a scene, with an outcome for each controller.
-    pub(crate) fn add(&mut self, scene: &Scene, entries: &[Entry], outcomes: &[Outcome]) {
+    pub(crate) fn add(&mut self, scene: &Scene, outcomes: &[Outcome]) {
         let mut row = vec![
             format!("{:02}", scene.number),
             scene.name.to_owned(),
@@ -54,12 +49,14 @@ impl Report {
         ];
         row.extend(outcomes.iter().map(|outcome| cell(scene, outcome)));
         self.read.push(row);
-        for (entry, outcome) in entries.iter().zip(outcomes) {
+        for ((name, passed, times), outcome) in self.sums.iter_mut().zip(outcomes) {
+            *passed += usize::from(outcome.passes);
+            times.push(outcome.micros);
             let passes = if outcome.passes { "yes" } else { "NO" };
             self.computed.push(vec![
                 format!("{:02}", scene.number),
                 scene.name.to_owned(),
-                entry.name.to_owned(),
+                (*name).to_owned(),
                 scene.asked.to_string(),
                 format!("{:e}", outcome.error),
                 outcome.in_air.to_string(),
@@ -67,42 +64,35 @@ impl Report {
                 format!("{:.1}", outcome.micros),
             ]);
         }
-        for ((passed, times), outcome) in self.sums.iter_mut().zip(outcomes) {
-            *passed += usize::from(outcome.passes);
-            times.push(outcome.micros);
-        }
     }
 
     /// Prints the first table, and writes the other two to files.
     pub(crate) fn finish(mut self, brief: bool) -> Result<(), Box<dyn Error>> {
-        let scenes = self.sums.first().map_or(0, |(_, times)| times.len());
+        let scenes = self.sums.first().map_or(0, |(.., times)| times.len());
         let row = |name: &str, cells: Vec<String>| {
             let head = ["", name, ""].map(str::to_owned);
             head.into_iter().chain(cells).collect()
         };
         let passed = self.sums.iter();
-        let passed = passed.map(|(passed, _)| format!("{passed} of {scenes}"));
+        let passed = passed.map(|(_, passed, _)| format!("{passed} of {scenes}"));
         self.read.push(row("scenes passed", passed.collect()));
         let times = self.sums.iter_mut();
-        let times: Vec<f64> = times.map(|(_, times)| quantile(times, 0.5)).collect();
+        let times: Vec<f64> = times.map(|(.., times)| quantile(times, 0.5)).collect();
         let shown = times.iter().map(|time| format!("{time:.1} us"));
         self.read
             .push(row("a tick, median of scenes", shown.collect()));
         println!("{}", self.read);
         let mut cells = Cells::default();
-        for (name, time) in self.names.iter().zip(&times) {
+        for ((name, ..), time) in self.sums.iter().zip(&times) {
             cells.value(&format!("{name}: a tick, median of scenes, us"), *time);
         }
-        if let Some(jolt) = self.names.iter().position(|name| name.starts_with("Jolt")) {
-            let name = format!("{} / {}", self.names[0], self.names[jolt]);
+        let mut names = self.sums.iter().map(|(name, ..)| *name);
+        if let Some(jolt) = names.position(|name| name.starts_with("Jolt")) {
+            let name = format!("{} / {}", self.sums[0].0, self.sums[jolt].0);
             cells.push(&name, times[0] / times[jolt], Bound::Most(1.0));
         }
         cells.finish("controllers_times", brief)?;
-        let brief = if brief { "_brief" } else { "" };
-        let path = measure_folder().join(format!("controllers{brief}.csv"));
-        self.computed.write_csv(&path)?;
-        println!("written to {}", path.display());
-        Ok(())
+        Ok(self.computed.write("controllers", brief)?)
     }
 }
 

@@ -18,7 +18,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clamber_scenes::giant::giant_of;
-use clamber_scenes::measure::is_brief;
+use clamber_scenes::measure::{exit_code, is_brief};
 use clamber_scenes::riders::Workload;
 use race::{Entrant, race};
 use report::Report;
@@ -53,13 +53,7 @@ const BRIEF: Effort = Effort {
 
 fn main() -> ExitCode {
     let brief = is_brief();
-    match run(if brief { &BRIEF } else { &FULL }, brief) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(if brief { &BRIEF } else { &FULL }, brief))
 }
 
 fn run(effort: &Effort, brief: bool) -> Result<(), Box<dyn Error>> {

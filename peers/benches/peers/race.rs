@@ -5,7 +5,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use clamber_peers::{Answer, Entry, Peer, taken_from_heap};
+use clamber_peers::{Answer, Entry, Kind, Peer, taken_from_heap};
 use clamber_scenes::measure::quantile;
 use clamber_scenes::riders::{Rider, Tick};
 use clamber_surface::geometry::Sphere;
@@ -30,18 +30,6 @@ impl Entrant {
         })
     }
 }
-
-/// A kind of query, timed alone for all riders.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
-    Ray,
-    Overlap,
-    Closest,
-    Cast,
-}
-
-/// All kinds of queries.
-pub(crate) const KINDS: [Kind; 4] = [Kind::Ray, Kind::Overlap, Kind::Closest, Kind::Cast];
 
 /// An entrant's median times, microseconds.
 pub(crate) struct Lap {
@@ -86,17 +74,17 @@ pub(crate) fn race(
         run += 1;
         for (entrant, times) in entrants.iter_mut().zip(&mut times) {
             whole(entrant.peer.as_mut(), tick, times)?;
-            for (kind, times) in KINDS.iter().zip(&mut times.queries) {
+            for ((kind, _), times) in Kind::ALL.iter().zip(&mut times.queries) {
                 alone(entrant.peer.as_mut(), tick, *kind, times)?;
             }
         }
     }
     let lap = |times: &mut Times| Lap {
         update: quantile(&mut times.update, 0.5),
-        queries: [0, 1, 2, 3].map(|kind| {
-            let times = &mut times.queries[kind];
-            (!times.is_empty()).then(|| quantile(times, 0.5))
-        }),
+        queries: times
+            .queries
+            .each_mut()
+            .map(|times| (!times.is_empty()).then(|| quantile(times, 0.5))),
         tick: (!times.tick.is_empty()).then(|| Whole {
             median: quantile(&mut times.tick, 0.5),
             quartiles: [0.25, 0.75].map(|part| quantile(&mut times.tick, part)),

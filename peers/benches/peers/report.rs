@@ -2,8 +2,8 @@
 
 use std::error::Error;
 
-use clamber_peers::{Plot, Series};
-use clamber_scenes::measure::{Bound, Cells, Table, measure_folder};
+use clamber_peers::Plot;
+use clamber_scenes::measure::{Bound, Cells, Table, measure_file};
 use clamber_surface::mesh::ColliderMesh;
 
 use crate::race::{Entrant, Lap};
@@ -104,34 +104,19 @@ impl Report {
 
     pub(crate) fn finish(self, brief: bool) -> Result<(), Box<dyn Error>> {
         println!("\n{}", self.table);
-        let brief = if brief { "_brief" } else { "" };
-        let folder = measure_folder();
-        let path = folder.join(format!("peers{brief}.csv"));
-        self.table.write_csv(&path)?;
-        println!("written to {}", path.display());
-        self.compare(brief.is_empty())?;
-        for riders in [1, 100] {
-            let title = format!(
-                "A whole tick, {riders} rider{}",
-                if riders == 1 { "" } else { "s" }
-            );
-            let plot = self.plot(
-                &title,
-                "vertices",
-                |row| row.riders == riders,
-                |row| row.vertices,
-            );
-            plot.write_svg(&folder.join(format!("peers_{riders}_riders{brief}.svg")))?;
+        self.table.write("peers", brief)?;
+        self.compare(!brief)?;
+        for (riders, what) in [(1, "1 rider"), (100, "100 riders")] {
+            let points = self.rows.iter().filter(|row| row.riders == riders);
+            let plot = plot(what, "vertices", points.map(|row| (row, row.vertices)));
+            let name = format!("peers_{riders}_riders");
+            plot.write_svg(&measure_file(&name, brief, "svg"))?;
         }
         let largest = self.rows.iter().map(|row| row.vertices).max().unwrap_or(0);
-        let title = format!("A whole tick, {largest} vertices");
-        let plot = self.plot(
-            &title,
-            "riders",
-            |row| row.vertices == largest,
-            |row| row.riders,
-        );
-        plot.write_svg(&folder.join(format!("peers_by_riders{brief}.svg")))
+        let points = self.rows.iter().filter(|row| row.vertices == largest);
+        let what = format!("{largest} vertices");
+        let plot = plot(&what, "riders", points.map(|row| (row, row.riders)));
+        plot.write_svg(&measure_file("peers_by_riders", brief, "svg"))
     }
 
     /// The fastest peer's time over clamber's, for each size and number of riders.
@@ -164,34 +149,23 @@ impl Report {
         cells.push("cells in which no peer is faster", ahead as f64, bound);
         cells.finish("peers_fastest", !full)
     }
+}
 
-    fn plot(
-        &self,
-        title: &str,
-        x: &str,
-        shown: impl Fn(&Row) -> bool,
-        place: impl Fn(&Row) -> usize,
-    ) -> Plot {
-        let mut series: Vec<Series> = Vec::new();
-        for row in self.rows.iter().filter(|row| shown(row)) {
-            let Some(tick) = row.tick else { continue };
-            let point = (place(row) as f64, tick);
-            match series.iter_mut().find(|series| series.name == row.name) {
-                Some(series) => series.points.push(point),
-                None => series.push(Series {
-                    name: row.name.to_owned(),
-                    points: vec![point],
-                    joined: true,
-                }),
-            }
-        }
-        Plot {
-            title: title.to_owned(),
-            x: x.to_owned(),
-            y: "us".to_owned(),
-            series,
+/// A plot of whole ticks, over the number beside each row.
+fn plot<'a>(what: &str, x: &str, rows: impl Iterator<Item = (&'a Row, usize)>) -> Plot {
+    let mut plot = Plot {
+        title: format!("A whole tick, {what}"),
+        x: x.to_owned(),
+        y: "us".to_owned(),
+        joined: true,
+        ..Plot::default()
+    };
+    for (row, place) in rows {
+        if let Some(tick) = row.tick {
+            plot.add(row.name, (place as f64, tick));
         }
     }
+    plot
 }
 
 /// A number with at least three significant digits, or with three decimals if it is below 1.

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use clamber_climber::ClimberConfig;
 use clamber_navigation::{ClimbGraph, GraphConfig, NavigationError};
 use clamber_surface::geometry::Similarity;
-use clamber_surface::mesh::{Rig, SurfaceKind, SurfaceTag, TriangleId, VertexId};
-use clamber_surface::rig::{Clip, Palette, Pose, RigError, WeakPoint};
+use clamber_surface::mesh::{Rig, SurfaceKind, SurfaceTag, TriangleId};
+use clamber_surface::rig::{Clip, Palette, Playback, Pose, RigError, WeakPoint};
 use clamber_surface::skin::skin;
 use clamber_surface::surface::creature_fingerprint;
 use glam::Vec3;
@@ -48,9 +48,6 @@ impl Creature {
     }
 
     /// Loads a creature from a `.glb` or `.gltf` file, and names it after the file. The walk speed is unknown.
-    ///
-    /// # Errors
-    /// [`SceneError`] if the file cannot be loaded.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
         let rig = clamber_gltf::load(path)?.rig;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -100,48 +97,51 @@ impl Creature {
     }
 
     /// Where it stands at rest when it is so many metres tall, and the height of the ground there, metres.
-    ///
-    /// # Errors
-    /// [`RigError`] if it cannot be posed.
     pub fn standing(&self, height: f64) -> Result<(Similarity, f64), RigError> {
-        let palette = self.rig.skeleton.palette(&self.rig.skeleton.rest_pose())?;
-        let rest = skin(&self.rig.collider, palette.matrices()).unwrap_or_default();
+        let rest = self.at_rest()?;
         let low = rest.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
         let high = rest.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
         let scale = height / f64::from(high - low);
         Ok((Similarity::from_scale(scale), f64::from(low) * scale))
     }
 
-    /// Area of its skin at rest when it is so many metres tall, square metres.
-    pub fn area(&self, height: f64) -> f64 {
-        let Ok((place, _)) = self.standing(height) else {
-            return 0.0;
-        };
-        let palette = self.rig.skeleton.palette(&self.rig.skeleton.rest_pose());
-        let palette = palette.unwrap_or_default();
-        let rest = skin(&self.rig.collider, palette.matrices()).unwrap_or_default();
-        let area = |corners: &[VertexId; 3]| {
-            let [a, b, c] = corners.map(|vertex| rest[vertex.index()].as_dvec3() * place.scale);
-            0.5 * (b - a).cross(c - a).length()
-        };
-        self.rig.collider.triangles().iter().map(area).sum()
+    /// The palette at rest.
+    pub fn rest_palette(&self) -> Result<Palette, RigError> {
+        self.rig.skeleton.palette(&self.rig.skeleton.rest_pose())
+    }
+
+    /// The palette of a clip that is repeated, after some seconds.
+    pub fn palette(&self, clip: &str, seconds: f64) -> Result<Palette, SceneError> {
+        let found = self.rig.clip(clip);
+        let clip = found.ok_or_else(|| format!("{} has no clip {clip}", self.name))?;
+        let rest = self.rig.skeleton.rest_pose();
+        let pose = clip.sample(&rest, seconds, Playback::Loop)?;
+        Ok(self.rig.skeleton.palette(&pose)?)
+    }
+
+    /// The positions of all vertices at rest, in model space.
+    pub fn at_rest(&self) -> Result<Vec<Vec3>, RigError> {
+        let palette = self.rest_palette()?;
+        Ok(skin(&self.rig.collider, palette.matrices()).unwrap_or_default())
     }
 
     /// The first clip whose name contains one of `words`. Words must be in lower case, names match in any case,
     /// and an earlier word wins.
     pub fn clip_like(&self, words: &[&str]) -> Option<&Clip> {
+        Some(&self.rig.clips[self.clip_index(words)?])
+    }
+
+    /// The index of [`Creature::clip_like`].
+    pub fn clip_index(&self, words: &[&str]) -> Option<usize> {
         words.iter().find_map(|word| {
-            let matches = |clip: &&Clip| clip.name.to_lowercase().contains(word);
-            self.rig.clips.iter().find(matches)
+            let matches = |clip: &Clip| clip.name.to_lowercase().contains(word);
+            self.rig.clips.iter().position(matches)
         })
     }
 
     /// Lowest and highest corner of the skin's bounding box in a pose, in model space.
-    ///
-    /// # Errors
-    /// [`SceneError`] if the pose does not fit the skeleton.
     pub fn bounds(&self, pose: &Pose) -> Result<(Vec3, Vec3), SceneError> {
-        let palette: Palette = self.rig.skeleton.palette(pose)?;
+        let palette = self.rig.skeleton.palette(pose)?;
         let positions = skin(&self.rig.collider, palette.matrices())?;
         let around = |(low, high): (Vec3, Vec3), p: &Vec3| (low.min(*p), high.max(*p));
         Ok(positions

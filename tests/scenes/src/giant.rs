@@ -25,9 +25,6 @@ pub fn brain_path() -> PathBuf {
 }
 
 /// The giant, with the collider that its file has.
-///
-/// # Errors
-/// [`SceneError`] if its file is missing or broken.
 pub fn giant() -> Result<Creature, SceneError> {
     Ok(Creature {
         walk_speed: Some(WALK_SPEED),

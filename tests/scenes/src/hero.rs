@@ -43,12 +43,9 @@ pub fn hero_path() -> PathBuf {
 
 impl Hero {
     /// A hero from a file's rig.
-    ///
-    /// # Errors
-    /// [`SceneError`] if the skeleton is no humanoid, or the clips do not fit it.
     pub fn new(rig: Rig) -> Result<Self, SceneError> {
-        let humanoid = Humanoid::find(&rig.skeleton).map_err(SceneError::new)?;
-        let figure = Figure::new(rig.skeleton, humanoid, rig.clips).map_err(SceneError::new)?;
+        let humanoid = Humanoid::find(&rig.skeleton)?;
+        let figure = Figure::new(rig.skeleton, humanoid, rig.clips)?;
         let body = Body::new(&figure);
         Ok(Self {
             palette: figure.skeleton().palette(body.pose())?,
@@ -60,19 +57,13 @@ impl Hero {
     }
 
     /// The hero of the project's file.
-    ///
-    /// # Errors
-    /// [`SceneError`] if the file cannot be loaded.
     pub fn load() -> Result<Self, SceneError> {
         Self::new(clamber_gltf::load(hero_path())?.rig)
     }
 
     /// Poses the hero for the battle's current tick, `dt` seconds after the last one that it was posed for.
-    ///
-    /// # Errors
-    /// [`SceneError`] if the body cannot be posed.
     pub fn watch(&mut self, battle: &Battle<'_>, dt: f64) -> Result<(), SceneError> {
-        let head = battle.creature().rig.skeleton.find("head");
+        let head = battle.creature.rig.skeleton.find("head");
         let head = head.and_then(|head| battle.palette().model_from_joint(head));
         let root = battle.surface().world_from_model();
         let look_at = head.map(|head| root.transform_point(head.translation));
@@ -89,7 +80,7 @@ impl Hero {
             };
             self.body.update(&self.figure, &frame, dt)
         });
-        posed.map_err(SceneError::new)?;
+        posed?;
         let mut pose = self.body.pose().clone();
         show_sword(self.figure.skeleton(), &mut pose);
         self.palette = self.figure.skeleton().palette(&pose)?;
@@ -121,9 +112,7 @@ impl Hero {
                 Some(_) => usual,
                 None => end,
             };
-            self.body
-                .set_overlay(&self.figure, act, fade)
-                .map_err(SceneError::new)?;
+            self.body.set_overlay(&self.figure, act, fade)?;
             self.shown = shown;
         }
         if let (Some((_, Some(time))), Some(layer)) = (wanted, self.body.overlay_mut()) {

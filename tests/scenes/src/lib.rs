@@ -6,15 +6,14 @@
 //! - [`bodies`]: ground, walls, ledges and creatures for the body of a climber.
 //! - [`riders`]: the queries of riders on a walking giant, tick by tick.
 //! - [`controllers`]: thirty scenes on moving ground, for any character controller.
-//! - [`rocks`]: rocks that fall on a shaking giant.
+//! - [`rocks`]: rocks that fall on a creature.
 //! - [`valley`]: the terrain of the scenes.
 //! - [`battle`]: the main scene: a climber against a giant that lives by its brain, or on a creature that walks and shakes.
 //! - [`duel`]: two climbers against the giant, for fights over a network.
-//! - [`person`]: a climber as a creature senses it.
 //! - `hero`, with the feature `record` or `render`: the body of a battle's climber.
 //! - `picture`, with the feature `render`: a battle's meshes, light and cameras for the renderer.
-//! - [`measure`]: tables, bounds, quantiles and times for benches.
-//! - [`climbs`]: a climber goes up a creature, by a plan or along a route.
+//! - [`measure`]: tables, bounds, quantiles, times and exit codes for benches and examples.
+//! - [`climbs`]: a creature that moves while it is climbed, and routes over it.
 //! - [`solid_angle`]: whether a point is inside a mesh, without the library's queries.
 //! - [`test_data`]: third-party files for tests.
 
@@ -24,13 +23,11 @@ pub mod climbs;
 pub mod controllers;
 mod creature;
 pub mod duel;
-mod error;
 pub mod giant;
 #[cfg(any(feature = "record", feature = "render"))]
 pub mod hero;
 mod json;
 pub mod measure;
-mod person;
 #[cfg(feature = "render")]
 pub mod picture;
 #[cfg(doctest)]
@@ -43,5 +40,6 @@ pub mod test_data;
 pub mod valley;
 
 pub use creature::Creature;
-pub use error::SceneError;
-pub use person::person;
+
+/// Why a creature or a scene cannot be loaded, made, stepped, recorded or drawn.
+pub type SceneError = Box<dyn std::error::Error>;

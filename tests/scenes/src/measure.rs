@@ -1,9 +1,10 @@
-//! Tools that benches share: tables, bounds, quantiles and times.
+//! Tools that benches and examples share: tables, bounds, quantiles, times and exit codes.
 
 use std::error::Error;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 /// True if a bench should run briefly, by criterion's rule: always, unless `--bench` is passed, as `cargo bench`
@@ -11,6 +12,31 @@ use std::time::{Duration, Instant};
 pub fn is_brief() -> bool {
     let passed = |flag: &str| std::env::args().any(|argument| argument == flag);
     !passed("--bench") || passed("--test")
+}
+
+/// The exit code of a bench or an example. Prints the error of one that failed.
+pub fn exit_code(result: Result<(), Box<dyn Error>>) -> ExitCode {
+    let Err(error) = result else {
+        return ExitCode::SUCCESS;
+    };
+    eprintln!("{error}");
+    ExitCode::FAILURE
+}
+
+/// The exit code of a program that checks its results: 0 if all checks hold, 1 if one failed, 2 after an error. Prints
+/// an error or that a check failed.
+pub fn checked(name: &str, result: Result<bool, Box<dyn Error>>) -> ExitCode {
+    match result {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => {
+            eprintln!("{name}: a check failed");
+            ExitCode::FAILURE
+        }
+        Err(error) => {
+            eprintln!("{name}: {error}");
+            ExitCode::from(2)
+        }
+    }
 }
 
 /// The smallest of `values` that at least the share `part` (0 to 1) of them does not exceed; NaN without
@@ -34,6 +60,21 @@ pub fn median_us(budget: Duration, mut run: impl FnMut()) -> f64 {
         times.push(start.elapsed().as_secs_f64() * 1e6);
     }
     quantile(&mut times, 0.5)
+}
+
+/// The mean time of `count` runs, microseconds. `run` gets the number of runs before it.
+///
+/// # Errors
+/// The first error of a run.
+pub fn mean_us(
+    count: u32,
+    mut run: impl FnMut(u32) -> Result<(), Box<dyn Error>>,
+) -> Result<f64, Box<dyn Error>> {
+    let start = Instant::now();
+    for index in 0..count {
+        run(index)?;
+    }
+    Ok(start.elapsed().as_secs_f64() * 1e6 / f64::from(count))
 }
 
 /// A bench fails if a number misses its bound by more than this factor, unless it runs briefly. Noise does not reach it,
@@ -119,18 +160,22 @@ impl Cells {
         self.push(name, value, Bound::None);
     }
 
-    /// Prints all rows, and writes them to `BENCH.csv` in [`measure_folder`]; a brief run writes
-    /// `BENCH_brief.csv`. A bound that is missed by less than four times, or in a brief run,
-    /// is no error.
+    /// Rows about one thing: each is named `thing: what`.
+    pub fn of(&mut self, thing: impl Into<String>) -> Rows<'_> {
+        Rows {
+            cells: self,
+            thing: thing.into(),
+        }
+    }
+
+    /// Prints all rows, and writes them as [`Table::write`] does. A bound that is missed by less than four times, or in
+    /// a brief run, is no error.
     ///
     /// # Errors
     /// If a number misses its bound by more than that, or the file cannot be written.
     pub fn finish(self, bench: &str, brief: bool) -> Result<(), Box<dyn Error>> {
         println!("\n{}", self.table);
-        let suffix = if brief { "_brief" } else { "" };
-        let path = measure_folder().join(format!("{bench}{suffix}.csv"));
-        self.table.write_csv(&path)?;
-        println!("written to {}", path.display());
+        self.table.write(bench, brief)?;
         if brief || self.far_missed.is_empty() {
             return Ok(());
         }
@@ -139,12 +184,35 @@ impl Cells {
     }
 }
 
-/// The folder for the results of benches: `measure` in cargo's target folder.
-pub fn measure_folder() -> PathBuf {
+/// Appends rows that begin with the same name: see [`Cells::of`].
+#[derive(Debug)]
+pub struct Rows<'a> {
+    cells: &'a mut Cells,
+    thing: String,
+}
+
+impl Rows<'_> {
+    /// Appends a row and prints it.
+    pub fn push(&mut self, what: &str, value: f64, bound: Bound) {
+        let name = format!("{}: {what}", self.thing);
+        self.cells.push(&name, value, bound);
+    }
+
+    /// Appends a row without a bound and prints it.
+    pub fn value(&mut self, what: &str, value: f64) {
+        self.push(what, value, Bound::None);
+    }
+}
+
+/// The file of a bench's results, in the folder `measure` of cargo's target folder. The name of one of a brief run ends
+/// in `_brief`.
+pub fn measure_file(name: &str, brief: bool, extension: &str) -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2);
     let target = target.or_else(|| Some(workspace?.join("target")));
-    target.unwrap_or_default().join("measure")
+    let suffix = if brief { "_brief" } else { "" };
+    let name = format!("measure/{name}{suffix}.{extension}");
+    target.unwrap_or_default().join(name)
 }
 
 /// Rows of text under named columns, to be printed as Markdown and written as CSV.
@@ -172,10 +240,15 @@ impl Table {
         self.rows.push(row);
     }
 
+    /// Writes the table as CSV to a [`measure_file`], and prints the file's path.
+    pub fn write(&self, name: &str, brief: bool) -> io::Result<()> {
+        let path = measure_file(name, brief, "csv");
+        self.write_csv(&path)?;
+        println!("written to {}", path.display());
+        Ok(())
+    }
+
     /// Writes the table as CSV, and creates the folder if needed.
-    ///
-    /// # Errors
-    /// If the file or its folder cannot be written.
     pub fn write_csv(&self, path: &Path) -> io::Result<()> {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)?;

@@ -8,7 +8,6 @@ use clamber_render::{
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::{ColliderMesh, Influence, VertexId};
 use clamber_surface::rig::Palette;
-use clamber_world::rapier3d::dynamics::RigidBodyHandle;
 use glam::DVec3;
 
 use crate::battle::{Battle, SceneError, Triangles, outcrop};
@@ -27,12 +26,9 @@ pub struct Stage {
     creature: Vec<RenderMeshId>,
     ground: RenderMeshId,
     outcrop: RenderMeshId,
-    rocks: Vec<(RigidBodyHandle, RenderMeshId)>,
     hero: Hero,
     hero_meshes: Vec<RenderMeshId>,
     watched: bool,
-    /// Those of the creature's meshes that are plates, with the numbers by which its brain names them.
-    plates: Vec<(RenderMeshId, u32)>,
 }
 
 impl Stage {
@@ -44,61 +40,10 @@ impl Stage {
             creature,
             ground: add_plain(renderer, &valley::mesh(GROUND_CELL), [1.0; 3], Look::Ground)?,
             outcrop: add_plain(renderer, &sharp(&outcrop()), OUTCROP, Look::Stone)?,
-            rocks: Vec::new(),
             hero_meshes: add_visual(renderer, &model)?,
             hero: Hero::new(model.rig)?,
             watched: false,
-            plates: Vec::new(),
         })
-    }
-
-    /// Draws plates until they break. `model` is the file whose meshes [`add_visual`] added.
-    #[must_use]
-    pub fn with_plates(mut self, model: &Model) -> Self {
-        let user = |mesh: &clamber_gltf::VisualMesh| {
-            let first = mesh.primitives.first();
-            first.map_or(0, |primitive| primitive.tag.user)
-        };
-        let all = self
-            .creature
-            .iter()
-            .copied()
-            .zip(model.visual.iter().map(user));
-        self.plates = all.filter(|(_, user)| *user > 0).collect();
-        self
-    }
-
-    /// Draws the battle's rocks as well.
-    pub fn add_rocks(
-        &mut self,
-        renderer: &mut Renderer,
-        battle: &Battle<'_>,
-    ) -> Result<(), RenderError> {
-        let meshes = battle.rocks().meshes(battle.world());
-        for (number, (rock, mesh)) in meshes.into_iter().enumerate() {
-            let shade = 0.24 + 0.03 * (number % 5) as f32;
-            let color = [shade, shade * 0.95, shade * 0.86];
-            // Round shapes have so many triangles that their edges may be shaded smoothly.
-            let mesh = if mesh.1.len() <= 12 {
-                sharp(&mesh)
-            } else {
-                mesh
-            };
-            let mesh = add_plain(renderer, &mesh, color, Look::Stone)?;
-            self.rocks.push((rock, mesh));
-        }
-        Ok(())
-    }
-
-    /// True unless a mesh is a plate that is broken.
-    fn shows(&self, mesh: RenderMeshId, battle: &Battle<'_>) -> bool {
-        let plate = self.plates.iter().find(|(id, _)| *id == mesh);
-        let (Some((_, user)), Some(life)) = (plate, battle.life()) else {
-            return true;
-        };
-        let files = &life.kind().brain().file().body.plates;
-        let index = files.iter().position(|file| file.user == *user);
-        index.is_none_or(|index| life.state().plate(index) > 0)
     }
 
     /// Poses the hero for the battle's current tick, `dt` seconds after the last one that was watched.
@@ -125,15 +70,9 @@ impl Stage {
         if battle.arena().is_some() {
             drawn.push(at(self.outcrop, Similarity::IDENTITY, None));
         }
-        let rocks = self.rocks.iter();
-        drawn.extend(rocks.map(|(rock, mesh)| at(*mesh, battle.placed(*rock), None)));
-        let shown = self.creature.iter();
-        let shown = shown.filter(|mesh| self.shows(**mesh, battle));
-        drawn.extend(shown.map(|mesh| Drawn {
-            mesh: *mesh,
-            world_from_model: *battle.surface().world_from_model(),
-            palette: Some(palette),
-        }));
+        let place = *battle.surface().world_from_model();
+        let creature = self.creature.iter();
+        drawn.extend(creature.map(|mesh| at(*mesh, place, Some(palette))));
         drawn
     }
 }
@@ -199,7 +138,7 @@ pub fn add_collider(
 }
 
 /// The triangles with three corners of their own each, so that edges are shaded sharp.
-fn sharp((corners, triangles): &Triangles) -> Triangles {
+pub fn sharp((corners, triangles): &Triangles) -> Triangles {
     let own = triangles.iter().flatten();
     let own = own.map(|corner| corners[*corner as usize]).collect();
     let triangles = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
@@ -207,7 +146,7 @@ fn sharp((corners, triangles): &Triangles) -> Triangles {
 }
 
 /// Adds a mesh in one colour to a renderer.
-fn add_plain(
+pub fn add_plain(
     renderer: &mut Renderer,
     (positions, triangles): &Triangles,
     color: [f32; 3],

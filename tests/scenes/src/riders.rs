@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use clamber_surface::geometry::{Capsule, Ray, Similarity, Sphere};
 use clamber_surface::mesh::{ColliderMesh, TriangleId, VertexId};
-use clamber_surface::rig::{Palette, Playback};
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::{Anchor, SkinnedSurface};
 
 use crate::Creature;
@@ -58,18 +58,12 @@ impl Workload {
     /// The riders stand on seeded random points of the skin where their body fits at rest. A single
     /// rider takes the one of 64 such points where its body touches nearest to 30 triangles on average
     /// over the walk, so that riders on giants of different resolution do as much work.
-    ///
-    /// # Errors
-    /// If the creature has no clip `walk`, or the clip does not fit it.
     pub fn new(creature: &Creature, riders: usize, ticks: usize) -> Result<Self, Box<dyn Error>> {
         let mesh = creature.rig.collider.clone();
         let mut surface = SkinnedSurface::new(mesh.clone());
         let edge = mean_edge(&mesh);
         let mut rng = fastrand::Rng::with_seed(4);
-        let walk = creature.rig.clips.iter().find(|clip| clip.name == "walk");
-        let walk = walk.ok_or("the giant cannot walk")?;
-        let rest = creature.rig.skeleton.rest_pose();
-        surface.place(&creature.rig.skeleton.palette(&rest)?, Similarity::IDENTITY)?;
+        surface.place(&creature.rest_palette()?, Similarity::IDENTITY)?;
         let mut seats = Vec::with_capacity(riders);
         let wanted = if riders == 1 { CHOICES } else { riders };
         while seats.len() < wanted {
@@ -79,10 +73,7 @@ impl Workload {
                 seats.push(seat);
             }
         }
-        let palette = |tick: usize| -> Result<Palette, Box<dyn Error>> {
-            let pose = walk.sample(&rest, tick as f64 / RATE, Playback::Loop)?;
-            Ok(creature.rig.skeleton.palette(&pose)?)
-        };
+        let palette = |tick: usize| creature.palette("walk", tick as f64 / RATE);
         if riders == 1 {
             let mut hits = Vec::new();
             let mut touched = vec![0; seats.len()];

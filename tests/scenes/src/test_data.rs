@@ -2,7 +2,7 @@
 //! `CLAMBER_TEST_DATA` names their folder.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::{Creature, SceneError};
 
@@ -33,9 +33,6 @@ pub fn file(test: &str, name: &str) -> Option<PathBuf> {
 /// All glTF files of the test data, models and fixtures, sorted: path within the folder, and full path. If
 /// [`VARIABLE`] is not set, prints that `test` was skipped, and returns none.
 ///
-/// # Errors
-/// If a folder cannot be read.
-///
 /// # Panics
 /// As [`file()`].
 pub fn gltf_files(test: &str) -> std::io::Result<Vec<(String, PathBuf)>> {
@@ -43,16 +40,27 @@ pub fn gltf_files(test: &str) -> std::io::Result<Vec<(String, PathBuf)>> {
         return Ok(Vec::new());
     };
     let root = trex.ancestors().nth(2).unwrap_or(&trex);
-    let mut files = Vec::new();
-    let mut folders = vec![root.to_owned()];
+    let named = files_in(root, &GLTF)?.into_iter().map(|path| {
+        let name = path.strip_prefix(root).unwrap_or(&path);
+        (name.to_string_lossy().replace('\\', "/"), path)
+    });
+    Ok(named.collect())
+}
+
+/// Extensions of the names of models.
+const GLTF: [&str; 2] = ["glb", "gltf"];
+
+/// The files of a folder and of all folders in it that have one of these extensions, sorted.
+pub fn files_in(folder: &Path, extensions: &[&str]) -> std::io::Result<Vec<PathBuf>> {
+    let (mut files, mut folders) = (Vec::new(), vec![folder.to_owned()]);
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder)? {
             let path = entry?.path();
+            let ends = |end: &&str| path.extension().is_some_and(|found| found == *end);
             if path.is_dir() {
                 folders.push(path);
-            } else if path.extension().is_some_and(|e| e == "glb" || e == "gltf") {
-                let name = path.strip_prefix(root).unwrap_or(&path);
-                files.push((name.to_string_lossy().replace('\\', "/"), path));
+            } else if extensions.iter().any(ends) {
+                files.push(path);
             }
         }
     }
@@ -72,19 +80,11 @@ pub fn models_or(given: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
         .ok_or_else(|| format!("no models: pass files, or set {VARIABLE} to a folder"))?;
     let folder = PathBuf::from(root).join("models");
     let failed = |error: std::io::Error| format!("no models: {}: {error}", folder.display());
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(&folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        if path.extension().is_some_and(|e| e == "glb" || e == "gltf") {
-            files.push(path);
-        }
-    }
-    files.sort();
+    let mut files = files_in(&folder, &GLTF).map_err(failed)?;
+    files.retain(|file| file.parent() == Some(folder.as_path()));
     if files.is_empty() {
-        return Err(format!(
-            "no models: no .glb or .gltf file in {}",
-            folder.display()
-        ));
+        let folder = folder.display();
+        return Err(format!("no models: no .glb or .gltf file in {folder}"));
     }
     Ok(files)
 }
@@ -99,9 +99,6 @@ const FIVE_MODELS: [&str; 5] = [
 ];
 
 /// Five creatures for measurements. If [`VARIABLE`] is not set, prints that `test` was skipped, and returns none.
-///
-/// # Errors
-/// [`SceneError`] if one cannot be loaded.
 ///
 /// # Panics
 /// As [`file()`].

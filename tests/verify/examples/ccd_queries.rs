@@ -5,26 +5,19 @@
 
 use std::process::ExitCode;
 
+use clamber_scenes::measure::checked;
 use clamber_verify::ccd::{self, CcdOptions};
+use clap::Parser;
 
 fn main() -> ExitCode {
-    let options = CcdOptions::from_command_line();
-    let report = match ccd::run(&options) {
-        Ok(report) => report,
-        Err(error) => {
-            eprintln!("ccd_queries: {error}");
-            return ExitCode::from(2);
+    let options = CcdOptions::parse();
+    let holds = ccd::run(&options).map(|report| {
+        if options.json {
+            println!("{}", report.to_json());
+        } else {
+            print!("{report}");
         }
-    };
-    if options.json {
-        println!("{}", report.to_json());
-    } else {
-        print!("{report}");
-    }
-    if report.holds() {
-        ExitCode::SUCCESS
-    } else {
-        eprintln!("ccd_queries: an answer is wrong or unproved");
-        ExitCode::FAILURE
-    }
+        report.holds()
+    });
+    checked("ccd_queries", holds)
 }

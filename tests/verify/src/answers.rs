@@ -11,32 +11,18 @@ macro_rules! answer_as_surface {
         impl Answers for $type<'_> {
             fn answer(&self, question: &Question, found: &mut Vec<Found>) {
                 match *question {
-                    Question::CastRay {
-                        origin,
-                        direction,
-                        max_distance,
-                    } => {
-                        let ray = Ray::new(origin, direction);
-                        let hit = ray.and_then(|ray| self.cast_ray(&ray, max_distance));
+                    Question::CastRay(line) => {
+                        let hit = ray(line).and_then(|ray| self.cast_ray(&ray, line.max_distance));
                         found.extend(hit.as_ref().map(surface_row));
                     }
-                    Question::IntersectsRay {
-                        origin,
-                        direction,
-                        max_distance,
-                    } => {
-                        let ray = Ray::new(origin, direction);
-                        let met = ray.is_some_and(|ray| self.intersects_ray(&ray, max_distance));
-                        found.extend(met.then_some(Found::Any));
+                    Question::IntersectsRay(line) => {
+                        let met = |ray: Ray| self.intersects_ray(&ray, line.max_distance);
+                        found.extend(ray(line).is_some_and(met).then_some(Found::Any));
                     }
-                    Question::CastRayAll {
-                        origin,
-                        direction,
-                        max_distance,
-                    } => {
+                    Question::CastRayAll(line) => {
                         let mut hits = Vec::new();
-                        if let Some(ray) = Ray::new(origin, direction) {
-                            self.cast_ray_all(&ray, max_distance, &mut hits);
+                        if let Some(ray) = ray(line) {
+                            self.cast_ray_all(&ray, line.max_distance, &mut hits);
                         }
                         found.extend(hits.iter().map(surface_row));
                     }
@@ -102,7 +88,7 @@ macro_rules! answer_as_surface {
         const _: () = {
             use std::hash::{DefaultHasher, Hash, Hasher};
 
-            use $crate::agreement::{Among, Answers, Cast, Found, Hit, Question, Shape};
+            use $crate::agreement::{Among, Answers, Cast, Found, Hit, Line, Question, Shape};
             use $surface::geometry::{Capsule, Ray};
             use $surface::measure::BruteForce;
             use $surface::surface::{
@@ -111,6 +97,10 @@ macro_rules! answer_as_surface {
 
     $crate::answer_as_surface!(@impl ModelSpace);
     $crate::answer_as_surface!(@impl BruteForce);
+
+            fn ray(line: Line) -> Option<Ray> {
+                Ray::new(line.origin, line.direction)
+            }
 
             fn capsule(shape: Shape) -> Option<Capsule> {
                 let [a, b] = shape.ends;

@@ -22,4 +22,4 @@ pub mod targets;
 
 /// The version of glam whose vectors this crate uses.
 pub use glam;
-pub use pair::{Core, MovingPair};
+pub use pair::MovingPair;

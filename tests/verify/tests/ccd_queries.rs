@@ -21,19 +21,7 @@ fn files() -> Vec<PathBuf> {
     let Some(readme) = test_data::file("collision queries", "ccd/README.md") else {
         return Vec::new();
     };
-    let (mut files, mut folders) = (Vec::new(), vec![readme.parent().unwrap().to_owned()]);
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "csv") {
-                files.push(path);
-            }
-        }
-    }
-    files.sort();
-    files
+    test_data::files_in(readme.parent().unwrap(), &["csv"]).unwrap()
 }
 
 #[test]

@@ -40,11 +40,7 @@ fn worst_share(creature: &Creature) -> (f64, usize) {
 #[test]
 fn a_moved_vertex_and_nan_exceed_the_bound() {
     let giant = giant().unwrap();
-    let palette = giant
-        .rig
-        .skeleton
-        .palette(&giant.rig.skeleton.rest_pose())
-        .unwrap();
+    let palette = giant.rest_palette().unwrap();
     let mesh = &giant.rig.collider;
     let mut positions = skin(mesh, palette.matrices()).unwrap();
     let share = |p: &[Vec3]| skinning_error_share(mesh, palette.matrices(), p);

@@ -1,7 +1,10 @@
-//! Helpers for the tests of joints.
+//! Helpers for the tests of joints and animators.
 
-use clamber_animation::glam::{DQuat, DVec3, Vec3};
-use clamber_animation::rig::{Joint, JointId, Pose, Skeleton, Transform};
+use clamber_animation::glam::{DAffine3, DQuat, DVec3, Vec3};
+use clamber_animation::rig::{
+    Channel, Interpolation, Joint, JointId, Keyframes, Pose, Skeleton, Transform,
+};
+use clamber_animation::{AnimationSet, Animator, PoseBuffers, RootDelta};
 use clamber_surface::geometry::Affine;
 
 pub(crate) fn joint(parent: Option<u32>, translation: Vec3) -> Joint {
@@ -13,13 +16,41 @@ pub(crate) fn joint(parent: Option<u32>, translation: Vec3) -> Joint {
     }
 }
 
+/// The frame of a joint in model space.
+pub(crate) fn frame(skeleton: &Skeleton, pose: &Pose, joint: JointId) -> DAffine3 {
+    let palette = skeleton.palette(pose).unwrap();
+    *palette.model_from_joint(joint).unwrap()
+}
+
 /// Position of a joint in model space.
 pub(crate) fn place(skeleton: &Skeleton, pose: &Pose, joint: u32) -> DVec3 {
-    let palette = skeleton.palette(pose).unwrap();
-    palette
-        .model_from_joint(JointId(joint))
-        .unwrap()
-        .translation
+    frame(skeleton, pose, JointId(joint)).translation
+}
+
+/// The angle between two directions.
+pub(crate) fn angle(a: DVec3, b: DVec3) -> f64 {
+    libm::atan2(a.cross(b).length(), a.dot(b))
+}
+
+pub(crate) fn channel(
+    joint: u32,
+    interpolation: Interpolation,
+    times: &[f32],
+    values: Keyframes,
+) -> Channel {
+    Channel::new(JointId(joint), interpolation, times.to_vec(), values).unwrap()
+}
+
+pub(crate) fn pose(set: &AnimationSet, animator: &Animator) -> Pose {
+    let mut pose = Pose::default();
+    let posed = animator.pose_into(set, &mut pose, &mut PoseBuffers::default());
+    posed.unwrap();
+    pose
+}
+
+/// Advances an animator; drops its events.
+pub(crate) fn advance(animator: &mut Animator, set: &AnimationSet, dt: f64) -> RootDelta {
+    animator.advance(set, dt, &mut Vec::new()).unwrap()
 }
 
 pub(crate) fn random(rng: &mut fastrand::Rng, size: f64) -> DVec3 {

@@ -6,7 +6,7 @@ use clamber_animation::rig::{JointId, Pose, Skeleton};
 use clamber_animation::{joint_in_model, joints_in_model};
 use clamber_surface::geometry::{rotation_from_axis_angle, rotation_vector};
 
-use crate::common::{joint, place};
+use crate::common::{angle, frame, joint, place};
 
 /// The head of [`torso`].
 const HEAD: JointId = JointId(4);
@@ -27,14 +27,9 @@ fn look(skeleton: &Skeleton) -> LookAt {
 
 /// The eye's position and its viewing direction, in model space.
 fn gaze(skeleton: &Skeleton, pose: &Pose) -> [DVec3; 2] {
-    let palette = skeleton.palette(pose).unwrap();
-    let head = palette.model_from_joint(HEAD).unwrap();
+    let head = frame(skeleton, pose, HEAD);
     let eye = head.transform_point3(DVec3::new(0.0, 0.1, 0.08));
     [eye, head.transform_vector3(DVec3::Z).normalize()]
-}
-
-fn angle(a: DVec3, b: DVec3) -> f64 {
-    libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
 fn at(yaw: f64, pitch: f64, distance: f64) -> DVec3 {
@@ -72,19 +67,15 @@ fn b10_the_gaze_arrives_and_half_a_weight_is_half_the_turn() {
                 assert!((seen - other).length() < 1e-6, "{yaw} {pitch} {weight}");
                 // The angle to the target falls monotonically with the weight.
                 let left = angle(seen, target - eye);
-                assert!(
-                    left <= last + 1e-6,
-                    "{yaw} {pitch} {weight}: {left} after {last}"
-                );
+                let told = format_args!("{yaw} {pitch} {weight}: {left}");
+                assert!(left <= last + 1e-6, "{told} after {last}");
                 last = left;
                 if k == 0 {
                     whole = angle(DVec3::Z, target - eye);
                 }
                 if k == 10 {
-                    assert!(
-                        (left - whole / 2.0).abs() <= 0.05 * whole + 1e-3,
-                        "{left} of {whole}"
-                    );
+                    let off = (left - whole / 2.0).abs();
+                    assert!(off <= 0.05 * whole + 1e-3, "{left} of {whole}");
                 }
             }
             assert!(last < 1e-4, "{yaw} {pitch}: {last} left");
@@ -107,21 +98,16 @@ fn mirrored_and_scaled_bodies_look_where_they_should() {
         let mut pose = skeleton.rest_pose();
         let mut memory = LookMemory::default();
         let left = look.solve(&skeleton, &mut pose, target, 1.0, &mut memory, 0.1);
-        assert!(
-            left.as_ref().is_ok_and(|left| *left < 1e-4),
-            "{scale} {turn}: {left:?}"
-        );
+        let left = left.unwrap();
+        assert!(left < 1e-4, "{scale} {turn}: {left}");
         let [eye, seen] = gaze(&skeleton, &pose);
         assert!(angle(seen, target - eye) < 1e-4, "{scale} {turn}");
         // `aim` points both axes of a head in the right directions as well.
         let directions = [DVec3::new(0.3, 0.2, 1.0), DVec3::new(-0.1, 1.0, 0.0)];
         aim(&skeleton, &mut pose, HEAD, [DVec3::Z, DVec3::Y], directions).unwrap();
-        let palette = skeleton.palette(&pose).unwrap();
-        let head = palette.model_from_joint(HEAD).unwrap().matrix3;
-        assert!(
-            angle(head * DVec3::Z, directions[0]) < 1e-5,
-            "{scale} {turn}"
-        );
+        let head = frame(&skeleton, &pose, HEAD).matrix3;
+        let off = angle(head * DVec3::Z, directions[0]);
+        assert!(off < 1e-5, "{scale} {turn}: {off}");
         let across = directions[0].cross(directions[1]);
         assert!((head * DVec3::Y).dot(across).abs() < 1e-5, "{scale} {turn}");
         assert!((head * DVec3::Y).dot(directions[1]) > 0.0, "{scale} {turn}");
@@ -143,31 +129,16 @@ fn mirrored_and_scaled_bodies_look_where_they_should() {
     pose.transforms[4].scale = Vec3::new(-1.0, 1.0, 1.0);
     let directions = [DVec3::new(0.3, 0.2, 1.0), DVec3::NEG_Y];
     aim(&torso(), &mut pose, HEAD, [DVec3::X, DVec3::Y], directions).unwrap();
-    let palette = torso().palette(&pose).unwrap();
-    let head = palette.model_from_joint(HEAD).unwrap().matrix3;
+    let head = frame(&torso(), &pose, HEAD).matrix3;
     assert!(angle(head * DVec3::X, directions[0]) < 1e-5 && (head * DVec3::Y).y < 0.0);
 
     let mut pose = torso().rest_pose();
     pose.transforms[1].scale = Vec3::new(1.0, 2.0, 1.0);
-    let sheared = aim(
-        &torso(),
-        &mut pose,
-        HEAD,
-        [DVec3::Z, DVec3::Y],
-        [DVec3::X, DVec3::Y],
-    );
+    let mut aimed = |joint, axes| aim(&torso(), &mut pose, joint, axes, [DVec3::X, DVec3::Y]);
+    let sheared = aimed(HEAD, [DVec3::Z, DVec3::Y]);
     assert!(matches!(sheared, Err(IkError::Sheared(_))), "{sheared:?}");
-    let parallel = aim(
-        &torso(),
-        &mut pose,
-        JointId(0),
-        [DVec3::Z, DVec3::Z],
-        [DVec3::X, DVec3::Y],
-    );
-    assert!(
-        matches!(parallel, Err(IkError::BadSetUp(_))),
-        "{parallel:?}"
-    );
+    let found = aimed(JointId(0), [DVec3::Z, DVec3::Z]);
+    assert!(matches!(found, Err(IkError::BadSetUp(_))), "{found:?}");
 }
 
 /// A pose of the torso with random rotations, and with a scale on one of its joints.
@@ -206,10 +177,8 @@ fn joints_are_oriented_below_any_parents() {
         (JointId(0), DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0)),
     ];
     for (joint, rotation) in wrong {
-        assert!(
-            orient(&torso(), &mut pose, joint, rotation).is_err(),
-            "{joint} {rotation}"
-        );
+        let refused = orient(&torso(), &mut pose, joint, rotation);
+        assert!(refused.is_err(), "{joint} {rotation}");
         assert_eq!(pose, before);
     }
 }
@@ -226,10 +195,8 @@ fn frames_of_several_joints_are_those_of_each() {
             let together = joints_in_model(&torso(), &pose, joints).unwrap();
             for (joint, frame) in joints.into_iter().zip(together) {
                 let alone = joint_in_model(&torso(), &pose, joint).unwrap();
-                assert!(
-                    frame.abs_diff_eq(alone, 1e-12),
-                    "{joints:?}: {frame} {alone}"
-                );
+                let same = frame.abs_diff_eq(alone, 1e-12);
+                assert!(same, "{joints:?}: {frame} {alone}");
             }
         }
     }
@@ -267,22 +234,13 @@ fn b10_limits_hold_and_a_target_behind_changes_the_side_once_a_second() {
                 core::f64::consts::PI + 0.6 * libm::sin(time * speed)
             };
             let mut pose = skeleton.rest_pose();
-            look.solve(
-                &skeleton,
-                &mut pose,
-                at(yaw, 0.2, 8.0),
-                1.0,
-                &mut memory,
-                1.0 / rate,
-            )
-            .unwrap();
+            let (target, dt) = (at(yaw, 0.2, 8.0), 1.0 / rate);
+            look.solve(&skeleton, &mut pose, target, 1.0, &mut memory, dt)
+                .unwrap();
             let seen = gaze(&skeleton, &pose)[1];
             let yaw_seen = libm::atan2(seen.x, seen.z);
-            assert!(
-                yaw_seen.abs() <= 80.5f64.to_radians(),
-                "{}",
-                yaw_seen.to_degrees()
-            );
+            let degrees = yaw_seen.abs().to_degrees();
+            assert!(degrees <= 80.5, "{degrees}");
             since += 1.0 / rate;
             // The head looks over a shoulder here.
             if yaw_seen.abs() > 79f64.to_radians() {
@@ -305,16 +263,9 @@ fn b10_limits_hold_and_a_target_behind_changes_the_side_once_a_second() {
     }
     let up = {
         let mut pose = skeleton.rest_pose();
-        let high = at(0.0, 1.5, 8.0);
-        look.solve(
-            &skeleton,
-            &mut pose,
-            high,
-            1.0,
-            &mut LookMemory::default(),
-            0.1,
-        )
-        .unwrap();
+        let (high, mut memory) = (at(0.0, 1.5, 8.0), LookMemory::default());
+        look.solve(&skeleton, &mut pose, high, 1.0, &mut memory, 0.1)
+            .unwrap();
         gaze(&skeleton, &pose)[1]
     };
     // The eye moves as the head turns, which changes the pitch by a degree and a half here.
@@ -334,10 +285,8 @@ fn b11_a_head_stays_where_it_looks_while_the_body_sways() {
     }
     joints.push(joint(Some(5), Vec3::Y * 0.4));
     let skeleton = Skeleton::new(joints).unwrap();
-    let (neck, head) = (
-        Chain::new(&skeleton, JointId(1), JointId(6)).unwrap(),
-        JointId(6),
-    );
+    let head = JointId(6);
+    let neck = Chain::new(&skeleton, JointId(1), head).unwrap();
     let rest = skeleton.rest_pose();
     let home = place(&skeleton, &rest, 6);
     let target = DVec3::new(0.0, 2.0, 30.0);
@@ -350,13 +299,9 @@ fn b11_a_head_stays_where_it_looks_while_the_body_sways() {
         body.rotation = turn.as_quat();
         pose
     };
-    let rotation = |pose: &Pose| -> DQuat {
-        let palette = skeleton.palette(pose).unwrap();
-        palette
-            .model_from_joint(head)
-            .unwrap()
-            .to_scale_rotation_translation()
-            .1
+    let rotation = |pose: &Pose| {
+        let head = frame(&skeleton, pose, head);
+        head.to_scale_rotation_translation().1
     };
     let (mut first, mut control) = (None, 0f64);
     for tick in 0..120 {
@@ -366,29 +311,17 @@ fn b11_a_head_stays_where_it_looks_while_the_body_sways() {
         let reach = neck.solve(&skeleton, &mut pose, home).unwrap();
         assert_eq!(reach, ReachResult::Reached);
         let to_target = target - place(&skeleton, &pose, 6);
-        aim(
-            &skeleton,
-            &mut pose,
-            head,
-            [DVec3::Z, DVec3::Y],
-            [to_target, DVec3::Y],
-        )
-        .unwrap();
+        let axes = [DVec3::Z, DVec3::Y];
+        aim(&skeleton, &mut pose, head, axes, [to_target, DVec3::Y]).unwrap();
         let moved = place(&skeleton, &pose, 6).distance(home);
         assert!(moved <= 0.02, "{moved} m in tick {tick}");
         let now = rotation(&pose);
         let first = *first.get_or_insert(now);
         let turned = rotation_vector(now * first.conjugate()).length();
-        assert!(
-            turned <= 1f64.to_radians(),
-            "{}° in tick {tick}",
-            turned.to_degrees()
-        );
+        let turned = turned.to_degrees();
+        assert!(turned <= 1.0, "{turned}° in tick {tick}");
     }
-    assert!(
-        control > 0.3,
-        "without it the head moves by {control} m only"
-    );
+    assert!(control > 0.3, "without it the head moves {control} m");
 }
 
 #[test]
@@ -410,10 +343,8 @@ fn chains_reach_what_they_can_and_say_what_they_cannot() {
         match reach {
             ReachResult::Reached => assert!(off < 2e-4, "{target}: {off}"),
             ReachResult::Short(gap) | ReachResult::TooNear(gap) => {
-                assert!(
-                    (gap - off).abs() < 1e-4 && off < 0.05,
-                    "{target}: {off} {gap}"
-                );
+                assert!((gap - off).abs() < 1e-4, "{target}: {off} {gap}");
+                assert!(off < 0.05, "{target}: {off} {gap}");
             }
         }
         for pair in [[0, 1], [1, 2], [2, 3], [3, 4]] {
@@ -422,13 +353,9 @@ fn chains_reach_what_they_can_and_say_what_they_cannot() {
         }
     }
     let mut pose = rest.clone();
-    let far = chain
-        .solve(&skeleton, &mut pose, DVec3::new(2.0, 1.0, 0.0))
-        .unwrap();
-    assert!(
-        matches!(far, ReachResult::Short(gap) if (gap - 1.4).abs() < 1e-4),
-        "{far:?}"
-    );
+    let far = chain.solve(&skeleton, &mut pose, DVec3::new(2.0, 1.0, 0.0));
+    let is_short = matches!(far, Ok(ReachResult::Short(gap)) if (gap - 1.4).abs() < 1e-4);
+    assert!(is_short, "{far:?}");
     assert!(chain.solve(&skeleton, &mut pose, DVec3::NAN).is_err());
     let mut wild = rest.clone();
     wild.transforms[HEAD.index()].translation.x = f32::NAN;
@@ -456,22 +383,10 @@ fn gazes_that_make_no_sense_are_refused() {
     assert!(new(&[(JointId(1), 0.5), (HEAD, 1.0)], DVec3::Z, DVec3::Y).is_some());
     let look = look(&skeleton);
     let mut pose = skeleton.rest_pose();
-    let mut solve = |target, weight| {
-        look.solve(
-            &skeleton,
-            &mut pose,
-            target,
-            weight,
-            &mut LookMemory::default(),
-            0.1,
-        )
-    };
-    assert_eq!(
-        solve(DVec3::NAN, 1.0),
-        Err(IkError::NotFinite("a target or a weight"))
-    );
-    assert_eq!(
-        solve(DVec3::Z, f64::NAN),
-        Err(IkError::NotFinite("a target or a weight"))
-    );
+    for (target, weight) in [(DVec3::NAN, 1.0), (DVec3::Z, f64::NAN)] {
+        let mut memory = LookMemory::default();
+        let found = look.solve(&skeleton, &mut pose, target, weight, &mut memory, 0.1);
+        let wanted = IkError::NotFinite("a target or a weight");
+        assert_eq!(found, Err(wanted), "{target} {weight}");
+    }
 }

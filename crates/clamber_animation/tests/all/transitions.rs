@@ -1,11 +1,11 @@
 //! Transitions between clips: scene B21.
 
 use clamber_animation::glam::DVec3;
-use clamber_animation::rig::{
-    Channel, Clip, Interpolation, JointId, Keyframes, Playback, Pose, Skeleton,
-};
-use clamber_animation::{AnimationSet, Animator, Layer, PoseBuffers};
+use clamber_animation::rig::{Clip, Interpolation, JointId, Keyframes, Playback, Skeleton};
+use clamber_animation::{AnimationSet, Animator, Layer};
 use clamber_gltf::LoadOptions;
+
+use crate::common::{advance, channel, pose};
 
 /// The giant scaled to a person's height. Its steps and shakes are then quicker than a person's.
 fn giant() -> (Skeleton, AnimationSet) {
@@ -16,26 +16,12 @@ fn giant() -> (Skeleton, AnimationSet) {
     (rig.skeleton, set)
 }
 
-fn pose(set: &AnimationSet, animator: &Animator) -> Pose {
-    let mut pose = Pose::default();
-    animator
-        .pose_into(set, &mut pose, &mut PoseBuffers::default())
-        .unwrap();
-    pose
-}
-
 /// Positions of all joints, in model space.
 fn places(skeleton: &Skeleton, set: &AnimationSet, animator: &Animator) -> Vec<DVec3> {
     let palette = skeleton.palette(&pose(set, animator)).unwrap();
-    let joints = 0..skeleton.joints().len() as u32;
-    joints
-        .map(|joint| {
-            palette
-                .model_from_joint(JointId(joint))
-                .unwrap()
-                .translation
-        })
-        .collect()
+    let joints = (0..skeleton.joints().len() as u32).map(JointId);
+    let frames = joints.map(|joint| palette.model_from_joint(joint).unwrap());
+    frames.map(|frame| frame.translation).collect()
 }
 
 fn farthest(a: &[DVec3], b: &[DVec3]) -> f64 {
@@ -47,7 +33,7 @@ fn farthest(a: &[DVec3], b: &[DVec3]) -> f64 {
 fn velocities(skeleton: &Skeleton, set: &AnimationSet, animator: &Animator) -> Vec<DVec3> {
     let step = 1.0 / 4096.0;
     let mut next = animator.clone();
-    next.advance(set, step, &mut Vec::new()).unwrap();
+    advance(&mut next, set, step);
     let [a, b] = [animator, &next].map(|animator| places(skeleton, set, animator));
     a.iter().zip(&b).map(|(a, b)| (*b - *a) / step).collect()
 }
@@ -55,8 +41,8 @@ fn velocities(skeleton: &Skeleton, set: &AnimationSet, animator: &Animator) -> V
 #[test]
 fn b21_a_change_of_clip_has_no_jump_of_place_or_velocity() {
     let (skeleton, set) = giant();
-    let clips =
-        ["idle", "walk", "shake", "swipe", "stomp", "stagger"].map(|n| set.find(n).unwrap());
+    let names = ["idle", "walk", "shake", "swipe", "stomp", "stagger"];
+    let clips = names.map(|name| set.find(name).unwrap());
     let (mut worst, mut fastest) = ([0f64; 3], 0f64);
     for from in clips {
         for to in clips {
@@ -73,9 +59,7 @@ fn b21_a_change_of_clip_has_no_jump_of_place_or_velocity() {
             fastest = was.iter().map(|v| v.length()).fold(fastest, f64::max);
             // After the fade's time no offset is left, to the bit.
             for _ in 0..73 {
-                animator
-                    .advance(&set, 1.0 / 240.0, &mut Vec::new())
-                    .unwrap();
+                advance(&mut animator, &set, 1.0 / 240.0);
             }
             assert!(!animator.is_fading());
             let plain = Animator::new(animator.layers().to_vec());
@@ -101,16 +85,9 @@ fn still() -> (Skeleton, AnimationSet) {
     let walk = set.clip(set.find("walk").unwrap()).unwrap();
     let hold = |name: &str, time: f64| {
         let pose = walk.sample(set.rest(), time, Playback::Loop).unwrap();
-        let joints = pose.transforms.iter().enumerate();
-        let channels = joints.map(|(joint, transform)| {
+        let channels = (0..).zip(&pose.transforms).map(|(joint, transform)| {
             let values = Keyframes::Rotation(vec![transform.rotation]);
-            Channel::new(
-                JointId(joint as u32),
-                Interpolation::Step,
-                vec![0.0],
-                values,
-            )
-            .unwrap()
+            channel(joint, Interpolation::Step, &[0.0], values)
         });
         Clip::new(name, channels.collect())
     };
@@ -137,19 +114,15 @@ fn b21_interruptions_do_not_build_up() {
         let now = places(&skeleton, &set, &animator);
         for end in &ends {
             let away = farthest(&now, end);
-            assert!(
-                away <= 1.1 * first,
-                "{away} m, {first} at first, in frame {frame}"
-            );
+            let told = format_args!("{away} m, {first} at first");
+            assert!(away <= 1.1 * first, "{told}, in frame {frame}");
         }
         if let Some(last) = last {
             let speed = farthest(&last, &now) * 240.0;
             assert!(speed < 4.0 * first / 0.3, "{speed} m/s in frame {frame}");
         }
         last = Some(now);
-        animator
-            .advance(&set, 1.0 / 240.0, &mut Vec::new())
-            .unwrap();
+        advance(&mut animator, &set, 1.0 / 240.0);
     }
     assert!(!animator.is_fading());
 }
@@ -204,7 +177,7 @@ fn changes_in_each_frame_do_not_let_the_pose_fly_away() {
                     if frame + 1 == frames {
                         settled = settled.max(away);
                     }
-                    animator.advance(&set, 1.0 / rate, &mut Vec::new()).unwrap();
+                    advance(&mut animator, &set, 1.0 / rate);
                 }
             }
         }
@@ -222,9 +195,7 @@ fn a_fade_is_the_same_at_any_frame_rate() {
         animator.layers_mut()[0].time = 0.4;
         animator.play(&set, 0, swipe, 0.5).unwrap();
         for _ in 0..rate / 4 {
-            animator
-                .advance(&set, 1.0 / f64::from(rate), &mut Vec::new())
-                .unwrap();
+            advance(&mut animator, &set, 1.0 / f64::from(rate));
         }
         assert!(animator.is_fading());
         pose(&set, &animator)

@@ -7,7 +7,7 @@ use clamber_animation::ik::{
 use clamber_animation::rig::{JointId, Pose, Skeleton, Transform};
 use clamber_surface::geometry::{rotation_from_axis_angle, rotation_vector};
 
-use crate::common::{joint, place, random, unit};
+use crate::common::{angle, joint, place, random, unit};
 
 /// The upper joint, the lower joint and the end of the limb of [`arm`].
 const JOINTS: [JointId; 3] = [JointId(1), JointId(2), JointId(3)];
@@ -26,6 +26,20 @@ fn arm(lengths: [f32; 2], root: Transform) -> Skeleton {
 
 fn limb(skeleton: &Skeleton) -> TwoBone {
     TwoBone::new(skeleton, JOINTS, DVec3::NEG_Z).unwrap()
+}
+
+/// Moves the end of the limb of [`arm`], without a memory.
+fn solve(skeleton: &Skeleton, pose: &mut Pose, goal: &TwoBoneGoal) -> ReachResult {
+    let reach = limb(skeleton).solve(skeleton, pose, goal, None);
+    reach.unwrap()
+}
+
+/// A target with a pole.
+fn towards(target: DVec3, pole: DVec3) -> TwoBoneGoal {
+    TwoBoneGoal {
+        pole: Some(pole),
+        ..TwoBoneGoal::reach(target)
+    }
 }
 
 fn shoulder(skeleton: &Skeleton, pose: &Pose) -> DVec3 {
@@ -74,10 +88,7 @@ fn b01_reachable_targets_are_reached_and_bones_keep_their_lengths() {
         let limb =
             TwoBone::new(&skeleton, JOINTS, root.rotation.as_dquat() * DVec3::NEG_Z).unwrap();
         let target = shoulder(&skeleton, &pose) + unit(&mut rng) * distance;
-        let goal = TwoBoneGoal {
-            pole: Some(random(&mut rng, 1.0)),
-            ..TwoBoneGoal::reach(target)
-        };
+        let goal = towards(target, random(&mut rng, 1.0));
         let reach = limb.solve(&skeleton, &mut pose, &goal, None).unwrap();
         assert_eq!(reach, ReachResult::Reached, "{lengths:?} {target}");
         let end = place(&skeleton, &pose, 3);
@@ -98,38 +109,21 @@ fn b02_far_targets_are_aimed_at_with_the_soft_length() {
         let distance = full * (1.0 + 2.0 * rng.f64());
         let goal = TwoBoneGoal {
             soft: 0.97,
-            pole: Some(random(&mut rng, 1.0)),
-            ..TwoBoneGoal::reach(from + direction * distance)
+            ..towards(from + direction * distance, random(&mut rng, 1.0))
         };
-        let reach = limb(&skeleton)
-            .solve(&skeleton, &mut pose, &goal, None)
-            .unwrap();
+        let reach = solve(&skeleton, &mut pose, &goal);
         let way = place(&skeleton, &pose, 3) - from;
         assert!(
             matches!(reach, ReachResult::Short(gap) if gap > 0.0),
             "{reach:?}"
         );
-        let aim = way.cross(direction).length().atan2_of(way.dot(direction));
+        let aim = angle(way, direction);
         assert!(aim <= 1e-4, "{aim}");
         // The formula of the reference: d' = r L + (1 - r) L (1 - e^(-(d - r L) / ((1 - r) L))).
         let room = 0.03 * full;
         let soft = 0.97 * full + room * (1.0 - libm::exp(-(distance - 0.97 * full) / room));
-        assert!(
-            (way.length() - soft).abs() <= 1e-5 * full,
-            "{} {soft}",
-            way.length()
-        );
-    }
-}
-
-/// `atan2` by libm, as a method.
-trait Atan2 {
-    fn atan2_of(self, x: f64) -> f64;
-}
-
-impl Atan2 for f64 {
-    fn atan2_of(self, x: f64) -> f64 {
-        libm::atan2(self, x)
+        let length = way.length();
+        assert!((length - soft).abs() <= 1e-5 * full, "{length} {soft}");
     }
 }
 
@@ -172,19 +166,11 @@ fn b03_impossible_input_gives_typed_errors_or_a_finite_pose() {
     // Numbers that are not finite, and softness out of range.
     let fine = TwoBoneGoal::reach(DVec3::ONE);
     let nan = TwoBoneGoal::reach(DVec3::NAN);
-    let no_pole = TwoBoneGoal {
-        pole: Some(DVec3::INFINITY),
-        ..fine
-    };
+    let no_pole = towards(DVec3::ONE, DVec3::INFINITY);
     let mut pose = rest.clone();
-    assert_eq!(
-        solve(&mut pose, &nan),
-        Err(IkError::NotFinite("the target"))
-    );
-    assert_eq!(
-        solve(&mut pose, &no_pole),
-        Err(IkError::NotFinite("the pole"))
-    );
+    for (goal, what) in [(nan, "the target"), (no_pole, "the pole")] {
+        assert_eq!(solve(&mut pose, &goal), Err(IkError::NotFinite(what)));
+    }
     for soft in [0.0, -1.0, 1.1, f64::NAN] {
         let goal = TwoBoneGoal { soft, ..fine };
         assert!(matches!(solve(&mut pose, &goal), Err(IkError::BadSetUp(_))));
@@ -192,23 +178,13 @@ fn b03_impossible_input_gives_typed_errors_or_a_finite_pose() {
     assert_eq!(pose, rest);
     // Bones and scales of 0.
     type Break = fn(&mut Transform);
+    let [a, b, c] = JOINTS;
+    let no_length: Break = |t| t.translation = Vec3::ZERO;
     let broken: [(usize, Break, IkError); 4] = [
-        (
-            2,
-            |t| t.translation = Vec3::ZERO,
-            IkError::NoLength(JointId(2)),
-        ),
-        (
-            3,
-            |t| t.translation = Vec3::ZERO,
-            IkError::NoLength(JointId(3)),
-        ),
-        (0, |t| t.scale.y = 0.0, IkError::NotInvertible(JointId(1))),
-        (
-            1,
-            |t| t.scale = Vec3::ZERO,
-            IkError::NotInvertible(JointId(2)),
-        ),
+        (2, no_length, IkError::NoLength(b)),
+        (3, no_length, IkError::NoLength(c)),
+        (0, |t| t.scale.y = 0.0, IkError::NotInvertible(a)),
+        (1, |t| t.scale = Vec3::ZERO, IkError::NotInvertible(b)),
     ];
     for (index, change, expected) in broken {
         let mut pose = rest.clone();
@@ -221,10 +197,8 @@ fn b03_impossible_input_gives_typed_errors_or_a_finite_pose() {
     pose.transforms[2].rotation = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
     assert_eq!(solve(&mut pose, &fine), Err(IkError::NotFinite("the pose")));
     pose.transforms.pop();
-    assert!(matches!(
-        solve(&mut pose, &fine),
-        Err(IkError::NoJoint { .. })
-    ));
+    let cut = solve(&mut pose, &fine);
+    assert!(matches!(cut, Err(IkError::NoJoint { .. })));
     // A limb of another skeleton.
     let mut body = joint(None, Vec3::ZERO);
     body.rest.translation = Vec3::Y;
@@ -235,7 +209,6 @@ fn b03_impossible_input_gives_typed_errors_or_a_finite_pose() {
     assert!(limb.lengths(&small, &small.rest_pose()).is_err());
     // Joints that do not form a limb.
     let new = |joints| TwoBone::new(&skeleton, joints, DVec3::NEG_Z);
-    let [a, b, c] = JOINTS;
     for bad in [
         [a, a, c],
         [a, b, b],
@@ -264,8 +237,7 @@ fn elbow_speed(soft: f64, phase: f64) -> f64 {
     for tick in 0..=ticks {
         let distance = 0.8 * full + (f64::from(tick) + phase) / rate;
         let found = bend([length; 2], DVec3::X * distance, DVec3::Y, soft, 0.0);
-        let [a, b] = [found.elbow, found.end - found.elbow];
-        let angle = libm::atan2(a.cross(b).length(), a.dot(b));
+        let angle = angle(found.elbow, found.end - found.elbow);
         if let Some(last) = last {
             fastest = fastest.max(f64::abs(angle - last) * rate);
         }
@@ -334,12 +306,9 @@ fn b06_an_elbow_does_not_flip_where_the_hand_passes_its_pole() {
             // Three circles with a radius of 0.4 m at 1 m/s, which pass near the pole's axis, which is up.
             let ticks = (3.0 * core::f64::consts::TAU * 0.4 * rate) as i32;
             for tick in 0..ticks {
-                let angle = f64::from(tick) / (0.4 * rate);
-                let direction = DVec3::new(libm::cos(angle), libm::sin(angle), offset).normalize();
-                let goal = TwoBoneGoal {
-                    pole: Some(DVec3::Y),
-                    ..TwoBoneGoal::reach(from + direction * 0.4)
-                };
+                let turn = f64::from(tick) / (0.4 * rate);
+                let direction = DVec3::new(libm::cos(turn), libm::sin(turn), offset).normalize();
+                let goal = towards(from + direction * 0.4, DVec3::Y);
                 limb(&skeleton)
                     .solve(&skeleton, &mut pose, &goal, Some((&mut memory, 1.0 / rate)))
                     .unwrap();
@@ -349,8 +318,7 @@ fn b06_an_elbow_does_not_flip_where_the_hand_passes_its_pole() {
                 if let Some((was, side_was)) = last {
                     // The rotation of the limb's plane about the limb, without the limb's own rotation.
                     let carried: DVec3 = DQuat::from_rotation_arc(was, direction) * side_was;
-                    let turned = libm::atan2(carried.cross(side).length(), carried.dot(side));
-                    worst = worst.max(turned);
+                    worst = worst.max(angle(carried, side));
                 }
                 last = Some((direction, side));
             }
@@ -393,15 +361,8 @@ fn b07_mirrored_limbs_are_mirrored_and_mirrored_rigs_reach() {
         let pole = random(&mut rng, 1.0);
         let solve = |skeleton: &Skeleton, target, pole| {
             let mut pose = skeleton.rest_pose();
-            let goal = TwoBoneGoal {
-                pole: Some(pole),
-                ..TwoBoneGoal::reach(target)
-            };
-            let limb = TwoBone::new(skeleton, JOINTS, DVec3::NEG_Z).unwrap();
-            assert_eq!(
-                limb.solve(skeleton, &mut pose, &goal, None),
-                Ok(ReachResult::Reached)
-            );
+            let reach = self::solve(skeleton, &mut pose, &towards(target, pole));
+            assert_eq!(reach, ReachResult::Reached);
             let [elbow, hand] = [2, 3].map(|k| place(skeleton, &pose, k));
             assert!(hand.distance(target) < 1e-5, "{target} {hand}");
             (elbow, hand, pose)
@@ -424,10 +385,8 @@ fn b07_mirrored_limbs_are_mirrored_and_mirrored_rigs_reach() {
         let (target, pole) = (random(&mut rng, 0.4), random(&mut rng, 1.0));
         let [a, b] =
             [DVec3::ONE, mirror].map(|by| bend([0.3, 0.25], target * by, pole * by, 0.97, 0.1));
-        assert!(
-            (a.elbow * mirror).distance(b.elbow) <= 1e-7
-                && (a.end * mirror).distance(b.end) <= 1e-7
-        );
+        assert!((a.elbow * mirror).distance(b.elbow) <= 1e-7);
+        assert!((a.end * mirror).distance(b.end) <= 1e-7);
     }
 }
 
@@ -446,8 +405,8 @@ fn b08_a_parent_that_scales_unevenly_is_exact_and_a_joint_that_does_is_refused()
         let mut pose = skeleton.rest_pose();
         let target =
             shoulder(&skeleton, &pose) + parent * (unit(&mut rng) * (0.01 + 0.58 * rng.f64()));
-        let reach = limb(&skeleton).solve(&skeleton, &mut pose, &TwoBoneGoal::reach(target), None);
-        assert_eq!(reach, Ok(ReachResult::Reached));
+        let reach = solve(&skeleton, &mut pose, &TwoBoneGoal::reach(target));
+        assert_eq!(reach, ReachResult::Reached);
         let end = place(&skeleton, &pose, 3);
         assert!(end.distance(target) <= 1e-3, "{}", end.distance(target));
     }
@@ -476,23 +435,16 @@ fn b09_a_solved_pose_is_kept() {
             pole: (k % 3 == 0).then(|| random(&mut rng, 1.0)),
             ..TwoBoneGoal::reach(from + unit(&mut rng) * (0.08 + 0.44 * rng.f64()))
         };
-        limb(&skeleton)
-            .solve(&skeleton, &mut pose, &goal, None)
-            .unwrap();
+        solve(&skeleton, &mut pose, &goal);
         let once = pose.clone();
-        limb(&skeleton)
-            .solve(&skeleton, &mut pose, &goal, None)
-            .unwrap();
+        solve(&skeleton, &mut pose, &goal);
         let pairs = once.transforms.iter().zip(&pose.transforms);
         for (a, b) in pairs {
             assert!(apart(a.rotation, b.rotation) <= 2e-6, "{goal:?}");
         }
         // A limb whose end is already at the target keeps its pose, however it was bent.
         let end = place(&skeleton, &pose, 3);
-        let stay = TwoBoneGoal::reach(end);
-        limb(&skeleton)
-            .solve(&skeleton, &mut pose, &stay, None)
-            .unwrap();
+        solve(&skeleton, &mut pose, &TwoBoneGoal::reach(end));
         for (a, b) in once.transforms.iter().zip(&pose.transforms) {
             assert!(apart(a.rotation, b.rotation) <= 2e-3, "{goal:?}");
         }
@@ -505,16 +457,12 @@ fn an_elbow_does_not_fold_beyond_its_limit() {
     let limb = limb(&skeleton).with_least_angle(0.6).unwrap();
     let mut pose = skeleton.rest_pose();
     let target = shoulder(&skeleton, &pose) + DVec3::X * 0.06;
-    let reach = limb
-        .solve(&skeleton, &mut pose, &TwoBoneGoal::reach(target), None)
-        .unwrap();
+    let reach = limb.solve(&skeleton, &mut pose, &TwoBoneGoal::reach(target), None);
     let [a, b, c] = [1, 2, 3].map(|k| place(&skeleton, &pose, k));
-    let [upper, lower] = [a - b, c - b];
-    let angle = libm::atan2(upper.cross(lower).length(), upper.dot(lower));
-    assert!((angle - 0.6).abs() < 1e-5, "{angle}");
-    assert!(
-        matches!(reach, ReachResult::TooNear(by) if (by - (a.distance(c) - 0.06)).abs() < 1e-5)
-    );
+    let folded = angle(a - b, c - b);
+    assert!((folded - 0.6).abs() < 1e-5, "{folded}");
+    let off = a.distance(c) - 0.06;
+    assert!(matches!(reach, Ok(ReachResult::TooNear(by)) if (by - off).abs() < 1e-5));
     for angle in [-0.1, 3.2, f64::NAN] {
         assert!(limb.with_least_angle(angle).is_err());
     }
@@ -554,9 +502,7 @@ fn an_overstretched_elbow_bends_the_right_way() {
         let before = pose.transforms[1].rotation;
         let from = shoulder(&skeleton, &pose);
         let target = from + (place(&skeleton, &pose, 3) - from) * 0.99;
-        limb(&skeleton)
-            .solve(&skeleton, &mut pose, &TwoBoneGoal::reach(target), None)
-            .unwrap();
+        solve(&skeleton, &mut pose, &TwoBoneGoal::reach(target));
         let elbow = place(&skeleton, &pose, 2) - from;
         assert!(elbow.z < -0.01, "{overstretch}: {elbow}");
         let turned = apart(before, pose.transforms[1].rotation);

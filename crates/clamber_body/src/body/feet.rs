@@ -83,7 +83,8 @@ pub(crate) fn step(
 ) {
     for side in Side::BOTH {
         let extremity = Extremity::Foot(side);
-        let other = &limbs[Extremity::Foot(opposite(side)).index()];
+        let opposite = Side::BOTH[1 - side.index()];
+        let other = &limbs[Extremity::Foot(opposite).index()];
         let other_stands = other.is_planted();
         let mut foot = Foot {
             context,
@@ -374,13 +375,6 @@ impl Foot<'_, '_> {
     fn tell(&self, hold: &Hold, plants: &mut Vec<Plant>) {
         let extremity = Extremity::Foot(self.side);
         self.context.tell(plants, extremity, hold, self.memory.pace);
-    }
-}
-
-fn opposite(side: Side) -> Side {
-    match side {
-        Side::Left => Side::Right,
-        Side::Right => Side::Left,
     }
 }
 

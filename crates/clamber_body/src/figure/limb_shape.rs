@@ -80,10 +80,7 @@ impl LimbShape {
     ) -> Self {
         let place = |joint: JointId| bound[joint.index()].translation;
         let elbow = place(limb.lower);
-        let (joint, tip) = match limb.end {
-            LimbEnd::Joint(joint) | LimbEnd::Beside(joint, _) => (Some(joint), place(joint)),
-            LimbEnd::Point(point) => (None, bound[limb.lower.index()].transform_point3(point)),
-        };
+        let (joint, tip) = (limb.end.joint(), limb.end.place(limb.lower, bound));
         let length = limb.length() * scale;
         let lower = limb.lengths[1] * scale;
         let (along, outward, contact, ball, heel) = if is_hand {

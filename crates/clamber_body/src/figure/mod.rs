@@ -77,10 +77,7 @@ impl Figure {
         crate::retarget::check(&humanoid, &skeleton)?;
         let mut set = AnimationSet::new(&skeleton, clips)?;
         let found = Clips::find(&set).ok_or(FigureError::NoIdle)?;
-        let feet = [0, 1].map(|side| {
-            let leg = &humanoid.legs[side];
-            leg.end.joint().unwrap_or(leg.lower)
-        });
+        let feet = crate::retarget::feet(&humanoid);
         let bound = reference(&skeleton, humanoid.hips, humanoid.head, feet);
         let limb = |extremity: Extremity| {
             let limb = match extremity {

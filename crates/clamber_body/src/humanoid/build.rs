@@ -242,10 +242,7 @@ impl Bound<'_> {
             other => other,
         };
         let ik = ik.map_err(failed)?;
-        let tip = match end {
-            LimbEnd::Joint(joint) | LimbEnd::Beside(joint, _) => self.place(joint),
-            LimbEnd::Point(point) => self.model(lower).transform_point3(point),
-        };
+        let tip = end.place(lower, &self.models);
         let [shoulder, elbow] = [upper, lower].map(|joint| self.place(joint));
         let lengths = [shoulder.distance(elbow), elbow.distance(tip)];
         let shoulder = named.shoulder.filter(|shoulder| {

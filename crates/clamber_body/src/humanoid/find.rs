@@ -178,7 +178,7 @@ impl<'a> Search<'a> {
 }
 
 /// Number of joints from the root to a joint, both included.
-fn depth(skeleton: &Skeleton, joint: JointId) -> usize {
+pub(crate) fn depth(skeleton: &Skeleton, joint: JointId) -> usize {
     let parent = |joint: &JointId| skeleton.joints()[joint.index()].parent;
     core::iter::successors(Some(joint), parent).count()
 }

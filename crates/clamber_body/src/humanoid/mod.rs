@@ -6,8 +6,9 @@ mod reference;
 
 use clamber_animation::ik::TwoBone;
 use clamber_surface::rig::JointId;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
+pub(crate) use find::depth;
 pub use joint::{HumanJoint, Side};
 pub(crate) use reference::reference;
 
@@ -97,6 +98,15 @@ impl LimbEnd {
         match self {
             Self::Joint(joint) | Self::Beside(joint, _) => Some(*joint),
             Self::Point(_) => None,
+        }
+    }
+
+    /// Where the hand or foot is, when `models` has the skeleton's joints in model space, and `lower` is the lower
+    /// bone's joint.
+    pub(crate) fn place(&self, lower: JointId, models: &[DAffine3]) -> DVec3 {
+        match self {
+            Self::Joint(joint) | Self::Beside(joint, _) => models[joint.index()].translation,
+            Self::Point(point) => models[lower.index()].transform_point3(*point),
         }
     }
 }

@@ -9,7 +9,7 @@ use clamber_world::Obstacle;
 use glam::{DQuat, DVec3};
 
 use crate::figures;
-use crate::play::play;
+use crate::play::{hips, play};
 
 /// Number of frames after a change of mode that are checked. The half keeps rounding of times from deciding about a
 /// frame.
@@ -166,13 +166,9 @@ fn who_crouched_while_it_got_up_gets_up_once() {
                 if stage.time < stood.get() + seconds {
                     return;
                 }
-                let hips = figure.humanoid().hips;
-                let model = clamber_animation::joint_in_model(figure.skeleton(), body.pose(), hips);
-                let place = body
-                    .world_from_model()
-                    .transform_point(model.unwrap().translation);
-                highest = highest.max(place.y);
-                fallen = fallen.max(highest - place.y);
+                let height = hips(&figure, body).y;
+                highest = highest.max(height);
+                fallen = fallen.max(highest - height);
             });
             println!("{name}, {seconds} s: hips rise to {highest:.2} m and fall by {fallen:.3} m");
             assert!(crouched && highest > 0.5, "{name}, {seconds} s");

@@ -6,7 +6,7 @@ use clamber_world::Obstacle;
 use glam::DVec3;
 
 use crate::figures;
-use crate::play::{play, quantile};
+use crate::play::{most, play, quantile};
 
 /// Time after the climber took hold in which hands and feet are on their way, seconds. Checks begin after it.
 const TAKES_HOLD: f64 = 0.5;
@@ -152,10 +152,6 @@ fn bent(figure: &Figure, body: &Body, extremity: Extremity) -> Bent {
         bone: 0.5 * (upper.distance(lower) + lower.distance(end)),
         holds: body.hold(extremity).is_some(),
     }
-}
-
-fn most(values: &[f64]) -> f64 {
-    values.iter().copied().fold(0.0, f64::max)
 }
 
 impl Holds {

@@ -7,18 +7,11 @@ use clamber_surface::mesh::Rig;
 use clamber_surface::rig::{JointId, Pose};
 use glam::DVec3;
 
+use crate::figures::hero_rig;
+
 fn load(name: &str) -> Option<Rig> {
     let file = test_data::file("bodies", &format!("models/{name}.glb"))?;
     Some(clamber_gltf::load(file).unwrap().rig)
-}
-
-fn hero() -> Rig {
-    clamber_gltf::load(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../assets/hero.glb"
-    ))
-    .unwrap()
-    .rig
 }
 
 /// The name of a joint.
@@ -51,7 +44,7 @@ fn check_limbs(rig: &Rig, body: &Humanoid) {
 
 #[test]
 fn the_hero_has_a_whole_body_and_clips_with_markers() {
-    let rig = hero();
+    let rig = hero_rig();
     let body = Humanoid::find(&rig.skeleton).unwrap();
     assert_eq!(body.joints().len(), 4 + 2 * 8);
     assert_eq!(
@@ -253,7 +246,7 @@ fn joints_without_names_are_named_by_hand() {
     // The body faces -Z, as is usual in its engine, and its origin is at its waist. With the clips of another body it
     // stands at a height of 0.
     assert!(body.facing.z < -0.999, "{}", body.facing);
-    let hero = hero();
+    let hero = hero_rig();
     let own = Humanoid::find(&hero.skeleton).unwrap();
     let retarget = Retarget::new((&hero.skeleton, &own), (&rig.skeleton, &body)).unwrap();
     let rest = retarget.pose(&hero.skeleton.rest_pose()).unwrap();

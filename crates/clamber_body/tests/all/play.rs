@@ -1,5 +1,6 @@
 use clamber_body::{Body, BodyInput, Figure};
 use clamber_scenes::bodies::{Scene, Stage};
+use glam::DVec3;
 
 /// Plays a scene with one frame per tick, and passes each frame to `see`.
 pub(crate) fn play(
@@ -23,6 +24,19 @@ pub(crate) fn play(
         drop(obstacles);
         see(&stage, &body);
     }
+}
+
+/// The place of a body's hips in the world.
+pub(crate) fn hips(figure: &Figure, body: &Body) -> DVec3 {
+    let hips = figure.humanoid().hips;
+    let model = clamber_animation::joint_in_model(figure.skeleton(), body.pose(), hips);
+    let place = model.unwrap().translation;
+    body.world_from_model().transform_point(place)
+}
+
+/// The largest of values; 0 without values.
+pub(crate) fn most(values: &[f64]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
 }
 
 /// The quantile at `share` of values, which it sorts in ascending order. 0 without values.

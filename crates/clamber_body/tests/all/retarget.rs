@@ -3,16 +3,12 @@
 use clamber_body::{Humanoid, Limb, LimbEnd, Retarget};
 use clamber_scenes::test_data;
 use clamber_surface::geometry::Affine;
-use clamber_surface::mesh::Rig;
 use clamber_surface::rig::{
     Channel, Clip, Interpolation, Joint, JointId, Keyframes, Playback, Pose, Skeleton, Transform,
 };
 use glam::{DAffine3, DQuat, DVec3, Quat};
 
-fn hero() -> Rig {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/hero.glb");
-    clamber_gltf::load(file).unwrap().rig
-}
+use crate::figures::hero_rig;
 
 fn models(skeleton: &Skeleton, pose: &Pose) -> Vec<DAffine3> {
     let palette = skeleton.palette(pose).unwrap();
@@ -42,7 +38,7 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
 
 #[test]
 fn a_clip_on_its_own_body_is_itself() {
-    let rig = hero();
+    let rig = hero_rig();
     let body = Humanoid::find(&rig.skeleton).unwrap();
     let same = Retarget::new((&rig.skeleton, &body), (&rig.skeleton, &body)).unwrap();
     let rest = rig.skeleton.rest_pose();
@@ -81,7 +77,7 @@ fn a_clip_on_its_own_body_is_itself() {
 
 #[test]
 fn limbs_of_other_bodies_point_where_the_heros_do() {
-    let rig = hero();
+    let rig = hero_rig();
     let body = Humanoid::find(&rig.skeleton).unwrap();
     for name in ["Character", "George", "CesiumMan", "robot", "RiggedFigure"] {
         let Some(file) = test_data::file("retargeted clips", &format!("models/{name}.glb")) else {
@@ -151,7 +147,7 @@ fn limbs_of_other_bodies_point_where_the_heros_do() {
 
 #[test]
 fn what_does_not_fit_is_refused() {
-    let rig = hero();
+    let rig = hero_rig();
     let body = Humanoid::find(&rig.skeleton).unwrap();
     let mut joints = rig.skeleton.joints()[..1].to_vec();
     joints[0].parent = None;
@@ -171,7 +167,7 @@ fn what_does_not_fit_is_refused() {
 /// A skeleton may be a chain of any length, in any order. It does not overflow the stack.
 #[test]
 fn a_long_chain_of_joints_is_no_trouble() {
-    let rig = hero();
+    let rig = hero_rig();
     let mut joints = rig.skeleton.joints().to_vec();
     let hips = rig.skeleton.find("hips").unwrap();
     let first = joints.len() as u32;

@@ -4,7 +4,7 @@ use clamber_world::Obstacle;
 use glam::DVec3;
 
 use crate::figures;
-use crate::play::{play, quantile};
+use crate::play::{hips, most, play, quantile};
 
 /// Height of a point above the nearest skin, metres; negative inside.
 fn above(stage: &Stage<'_>, point: DVec3) -> f64 {
@@ -86,10 +86,6 @@ fn stances(scene: &Scene, figure: &Figure) -> Stances {
     seen
 }
 
-fn most(values: &[f64]) -> f64 {
-    values.iter().copied().fold(0.0, f64::max)
-}
-
 /// Scene B19: feet do not slide over the ground, a lift or a turntable.
 #[test]
 fn feet_stay_where_they_stand() {
@@ -117,11 +113,7 @@ fn feet_stay_where_they_stand() {
 fn hips_above_ramp(scene: &Scene, figure: &Figure, slope: f64, rate: f64) -> Vec<DVec3> {
     let mut way = Vec::new();
     play(scene, figure, rate, |stage, body| {
-        let hips = figure.humanoid().hips;
-        let model = clamber_animation::joint_in_model(figure.skeleton(), body.pose(), hips);
-        let place = body
-            .world_from_model()
-            .transform_point(model.unwrap().translation);
+        let place = hips(figure, body);
         if (3.0..15.0).contains(&stage.climber.state().position.z) {
             way.push(place - DVec3::Y * (slope * place.z));
         }

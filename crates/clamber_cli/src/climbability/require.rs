@@ -6,71 +6,51 @@ use clamber_navigation::ClimbReport;
 /// A condition on one number of the report, such as `weak_points>=3`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirement {
-    number: Number,
-    order: Order,
+    /// Index in [`NUMBERS`].
+    number: usize,
+    /// Index in [`ORDERS`].
+    order: usize,
     wanted: f64,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Number {
-    WeakPoints,
-    Reachable,
-    ReachableArea,
-    RestArea,
-    Entries,
-}
+/// A number of the report.
+type Number = fn(&ClimbReport) -> f64;
 
 /// The numbers by their names in a requirement.
 const NUMBERS: [(&str, Number); 5] = [
-    ("weak_points", Number::WeakPoints),
-    ("reachable", Number::Reachable),
-    ("reachable_area", Number::ReachableArea),
-    ("rest_area", Number::RestArea),
-    ("entries", Number::Entries),
+    ("weak_points", |report| {
+        let reachable = report.weak_points.iter().filter(|point| point.reachable);
+        reachable.count() as f64
+    }),
+    ("reachable", |report| report.reachable_area / report.area),
+    ("reachable_area", |report| report.reachable_area),
+    ("rest_area", |report| report.rest_area),
+    ("entries", |report| {
+        report.ways_on.iter().map(|way| way.entries as f64).sum()
+    }),
 ];
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Order {
-    AtLeast,
-    AtMost,
-    Above,
-    Below,
-    Is,
-}
+/// A comparison of the report's number with the wanted one.
+type Order = fn(&f64, &f64) -> bool;
 
 /// The comparison signs. `>=` and `<=` come before `>` and `<`, as the first sign found in the text is taken.
 const ORDERS: [(&str, Order); 5] = [
-    (">=", Order::AtLeast),
-    ("<=", Order::AtMost),
-    (">", Order::Above),
-    ("<", Order::Below),
-    ("=", Order::Is),
+    (">=", f64::ge),
+    ("<=", f64::le),
+    (">", f64::gt),
+    ("<", f64::lt),
+    ("=", f64::eq),
 ];
 
 impl Requirement {
     /// The report's value of the required number.
     pub fn found(&self, report: &ClimbReport) -> f64 {
-        match self.number {
-            Number::WeakPoints => {
-                let reachable = report.weak_points.iter().filter(|point| point.reachable);
-                reachable.count() as f64
-            }
-            Number::Reachable => report.reachable_area / report.area,
-            Number::ReachableArea => report.reachable_area,
-            Number::RestArea => report.rest_area,
-            Number::Entries => report.ways_on.iter().map(|way| way.entries as f64).sum(),
-        }
+        NUMBERS[self.number].1(report)
     }
 
     /// True if the value `found` meets the requirement.
     pub fn holds(&self, found: f64) -> bool {
-        match self.order {
-            Order::AtLeast => found >= self.wanted,
-            Order::AtMost => found <= self.wanted,
-            Order::Above => found > self.wanted,
-            Order::Below => found < self.wanted,
-            Order::Is => found == self.wanted,
-        }
+        ORDERS[self.order].1(&found, &self.wanted)
     }
 }
 
@@ -78,21 +58,21 @@ impl FromStr for Requirement {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let split = ORDERS.iter().find_map(|(sign, order)| {
+        let split = ORDERS.iter().enumerate().find_map(|(order, (sign, _))| {
             let (name, wanted) = text.split_once(sign)?;
-            Some((name.trim(), *order, wanted.trim()))
+            Some((name.trim(), order, wanted.trim()))
         });
         let Some((name, order, wanted)) = split else {
             return Err("must be like weak_points>=3, with one of >=, <=, >, < and =".to_owned());
         };
-        let number = NUMBERS.iter().find(|(known, _)| *known == name);
-        let Some((_, number)) = number else {
+        let number = NUMBERS.iter().position(|(known, _)| *known == name);
+        let Some(number) = number else {
             let known: Vec<&str> = NUMBERS.iter().map(|(name, _)| *name).collect();
             return Err(format!("{name} is none of {}", known.join(", ")));
         };
         match wanted.parse::<f64>() {
             Ok(wanted) if wanted.is_finite() => Ok(Self {
-                number: *number,
+                number,
                 order,
                 wanted,
             }),
@@ -103,12 +83,7 @@ impl FromStr for Requirement {
 
 impl fmt::Display for Requirement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = NUMBERS.iter().find(|(_, number)| *number == self.number);
-        let sign = ORDERS.iter().find(|(_, order)| *order == self.order);
-        let (name, sign) = (
-            name.map_or("", |name| name.0),
-            sign.map_or("", |sign| sign.0),
-        );
+        let (name, sign) = (NUMBERS[self.number].0, ORDERS[self.order].0);
         write!(f, "{name}{sign}{}", self.wanted)
     }
 }

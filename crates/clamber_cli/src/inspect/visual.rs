@@ -57,8 +57,11 @@ impl VisualDistance {
     /// The median and the largest distance, or `None` if nothing was measured.
     pub(super) fn finish(&mut self) -> Option<Distances> {
         let worst = self.distances.iter().copied().reduce(f64::max)?;
+        self.distances.sort_by(f64::total_cmp);
+        // For an even count the median is the smaller of the middle two.
+        let middle = (self.distances.len() - 1) / 2;
         Some(Distances {
-            median_m: median(&mut self.distances)?,
+            median_m: self.distances[middle],
             worst_m: worst,
         })
     }
@@ -82,10 +85,4 @@ fn distance(surface: &SkinnedSurface, place: Vec3) -> Result<f64, SurfaceError> 
             f32::INFINITY
         };
     }
-}
-
-/// The median, or `None` without values. For an even count it is the smaller of the middle two. Sorts `values`.
-fn median(values: &mut [f64]) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len().saturating_sub(1) / 2).copied()
 }

@@ -56,21 +56,42 @@ fn clamber(arguments: &[&str]) -> Output {
     command.args(arguments).output().unwrap()
 }
 
+/// What `clamber` says with these arguments. It has to end with `code`. Its errors are told for the code 2, and its
+/// output otherwise.
+fn said(arguments: &[&str], code: i32) -> String {
+    let ended = clamber(arguments);
+    let bytes = if code == 2 {
+        ended.stderr
+    } else {
+        ended.stdout
+    };
+    let text = String::from_utf8(bytes).unwrap();
+    assert_eq!(ended.status.code(), Some(code), "{arguments:?}: {text}");
+    text
+}
+
+/// Compares a recording with others. Each row has another recording, the code that the command ends with, and what it
+/// says.
+fn compares(first: &str, rows: &[(String, i32, &str)]) {
+    for (other, code, told) in rows {
+        let text = said(&["compare", first, other], *code);
+        assert!(text.contains(told), "{first} {other}: {text}");
+    }
+}
+
 #[test]
 fn the_import_is_told_before_the_measurements() {
     let file = giant::path();
     let file = file.to_str().unwrap();
-    let ended = clamber(&["inspect", file, "--clip", "idle", "--poses", "1"]);
-    let text = String::from_utf8(ended.stdout).unwrap();
-    assert_eq!(ended.status.code(), Some(0), "{text}");
+    let text = said(&["inspect", file, "--clip", "idle", "--poses", "1"], 0);
     let [import, measured] = ["weak points", "measured in             2 poses"].map(|row| {
         text.find(row)
             .unwrap_or_else(|| panic!("no {row} in {text}"))
     });
     assert!(import < measured, "{text}");
 
-    let ended = clamber(&["inspect", file, "--json", "--clip", "idle", "--poses", "1"]);
-    let text = String::from_utf8(ended.stdout).unwrap();
+    let json = ["inspect", file, "--json", "--clip", "idle", "--poses", "1"];
+    let text = said(&json, 0);
     let report: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(report["poses"], 2, "{text}");
     assert_eq!(report["open_edges"], 0, "{text}");
@@ -81,15 +102,8 @@ fn the_import_is_told_before_the_measurements() {
 fn brains_are_inspected() {
     let brain = giant::brain_path();
     let (brain, creature) = (brain.to_str().unwrap(), giant::path());
-    let ended = clamber(&[
-        "inspect",
-        "--brain",
-        brain,
-        "--creature",
-        creature.to_str().unwrap(),
-    ]);
-    let text = String::from_utf8(ended.stdout).unwrap();
-    assert_eq!(ended.status.code(), Some(0), "{text}");
+    let creature = creature.to_str().unwrap();
+    let text = said(&["inspect", "--brain", brain, "--creature", creature], 0);
     assert!(
         text.contains("stomp_left") && text.contains("all of it can happen"),
         "{text}"
@@ -98,9 +112,7 @@ fn brains_are_inspected() {
     let broken = std::env::temp_dir().join(format!("clamber-brain-{}.json", std::process::id()));
     let file = std::fs::read_to_string(brain).unwrap();
     std::fs::write(&broken, file.replacen("\"prey_seen\"", "\"prey_sen\"", 1)).unwrap();
-    let ended = clamber(&["inspect", "--brain", broken.to_str().unwrap()]);
-    let text = String::from_utf8(ended.stderr).unwrap();
-    assert_eq!(ended.status.code(), Some(2), "{text}");
+    let text = said(&["inspect", "--brain", broken.to_str().unwrap()], 2);
     assert!(
         text.contains("line ") && text.contains("prey_sen"),
         "{text}"
@@ -120,13 +132,12 @@ fn brains_are_proposed() {
     let (mut proposed, mut warned, mut longest) = (0, 0, 0);
     for path in files {
         let creature = path.to_str().unwrap();
-        let ended = clamber(&["inspect", "--propose-brain", creature, "--height", "12.5"]);
-        let text = String::from_utf8(ended.stdout).unwrap();
+        let propose = ["inspect", "--propose-brain", creature, "--height", "12.5"];
         if load(&path).is_err() {
-            assert_eq!(ended.status.code(), Some(2), "{creature}");
+            said(&propose, 2);
             continue;
         }
-        assert_eq!(ended.status.code(), Some(0), "{creature}");
+        let text = said(&propose, 0);
         let lines = text.lines().count();
         assert!(lines <= 40, "{creature}: {lines} lines\n{text}");
         let json: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -138,9 +149,8 @@ fn brains_are_proposed() {
         let weak_points = &json["body"]["weak_points"];
         assert_eq!(weak_points.is_null(), has_none, "{creature}\n{text}");
         std::fs::write(&file, &text).unwrap();
-        let ended = clamber(&["inspect", "--brain", &file, "--creature", creature]);
-        let report = String::from_utf8(ended.stdout).unwrap();
-        assert_eq!(ended.status.code(), Some(0), "{creature}\n{text}\n{report}");
+        let fits = ["inspect", "--brain", file.as_str(), "--creature", creature];
+        let report = said(&fits, 0);
         assert!(!report.contains("does not end as it begins"), "{report}");
         (proposed, longest) = (proposed + 1, longest.max(lines));
         // The same brain without the `close` entries, which make clips end as they begin.
@@ -150,8 +160,7 @@ fn brains_are_proposed() {
         let closed = clips.filter_map(|clip| clip.as_object_mut()?.remove("close"));
         if closed.count() > 0 {
             std::fs::write(&file, open.to_string()).unwrap();
-            let ended = clamber(&["inspect", "--brain", &file, "--creature", creature]);
-            let report = String::from_utf8(ended.stdout).unwrap();
+            let report = String::from_utf8(clamber(&fits).stdout).unwrap();
             warned += usize::from(report.contains("does not end as it begins"));
         }
     }
@@ -166,9 +175,7 @@ fn brains_are_proposed() {
         let creature = giant::path();
         let all = ["inspect", creature.to_str().unwrap()].into_iter();
         let all: Vec<&str> = all.chain(arguments.iter().copied()).collect();
-        let ended = clamber(&all);
-        let text = String::from_utf8(ended.stderr).unwrap();
-        assert_eq!(ended.status.code(), Some(2), "{text}");
+        let text = said(&all, 2);
         assert!(text.contains(told), "{text}");
     }
 }
@@ -191,9 +198,7 @@ fn errors_name_what_is_wrong() {
         (&["compare", "nowhere.mcap", "there.mcap"], "nowhere.mcap"),
         (&["compare", "nowhere.mcap"], "<OTHER.mcap>"),
     ] {
-        let ended = clamber(arguments);
-        let text = String::from_utf8(ended.stderr).unwrap();
-        assert_eq!(ended.status.code(), Some(2), "{text}");
+        let text = said(arguments, 2);
         assert!(text.contains(told), "{text}");
     }
 }
@@ -217,24 +222,14 @@ fn recorded(name: &str, seed: u64, ticks: u64) -> String {
 #[test]
 fn recordings_are_equal_or_the_first_field_that_differs_is_told() {
     let first = recorded("first", 1, 60);
-    for (other, code, told) in [
-        (recorded("again", 1, 60), 0, "all 60 ticks are equal"),
-        (
-            recorded("shorter", 1, 40),
-            1,
-            "40 ticks are equal in every bit; then",
-        ),
-        (
-            recorded("other", 2, 60),
-            1,
-            "the climber's state differs in",
-        ),
-    ] {
-        let ended = clamber(&["compare", &first, &other]);
-        let text = String::from_utf8(ended.stdout).unwrap();
-        assert_eq!(ended.status.code(), Some(code), "{text}");
-        assert!(text.contains(told), "{text}");
-    }
+    let [again, shorter, other] = [("again", 1, 60), ("shorter", 1, 40), ("other", 2, 60)]
+        .map(|(name, seed, ticks)| recorded(name, seed, ticks));
+    let rows = [
+        (again, 0, "all 60 ticks are equal"),
+        (shorter, 1, "40 ticks are equal in every bit; then"),
+        (other, 1, "the climber's state differs in"),
+    ];
+    compares(&first, &rows);
 }
 
 /// Records a duel. The second fighter's walk input is changed for the tick `aims_otherwise`.
@@ -288,65 +283,34 @@ fn recordings_with_gaps_are_compared_where_both_have_ticks() {
     let duel = recorded_duel("gaps", None, 240);
     let [second, third] = [1, 2].map(|index| without_chunk(&duel, index));
     let empty = (0..5).fold(duel.clone(), |file, _| without_chunk(&file, 0));
+    let both = "121 ticks are in both, and equal in every bit; 60 are only in the first";
+    let less = "60 are only in the first recording and 0 only in the second";
+    let more = "0 are only in the first recording and 60 only in the second";
     for (first, other, code, told) in [
         (&second, &second, 0, "all 181 ticks are equal"),
-        (
-            &second,
-            &third,
-            1,
-            "121 ticks are in both, and equal in every bit; 60 are only in the first",
-        ),
-        (
-            &duel,
-            &second,
-            1,
-            "60 are only in the first recording and 0 only in the second",
-        ),
-        (
-            &second,
-            &duel,
-            1,
-            "0 are only in the first recording and 60 only in the second",
-        ),
+        (&second, &third, 1, both),
+        (&duel, &second, 1, less),
+        (&second, &duel, 1, more),
         (&empty, &empty, 2, "there is no tick in it"),
     ] {
-        let ended = clamber(&["compare", first, other]);
-        let text = [ended.stdout, ended.stderr].concat();
-        let text = String::from_utf8(text).unwrap();
-        assert_eq!(ended.status.code(), Some(code), "{first} {other}: {text}");
-        assert!(text.contains(told), "{first} {other}: {text}");
+        compares(first, &[(other.clone(), code, told)]);
     }
 }
 
 #[test]
 fn recordings_of_arenas_are_equal_or_who_differs_is_told() {
     let first = recorded_duel("duel", None, 90);
-    for (other, code, told) in [
-        (
-            recorded_duel("duel_again", None, 90),
-            0,
-            "all 91 ticks are equal",
-        ),
-        (
-            recorded_duel("duel_shorter", None, 50),
-            1,
-            "51 ticks are equal in every bit; then",
-        ),
-        (
-            recorded_duel("duel_other", Some(60), 90),
-            1,
-            "the input of archer for the step to tick 61 differs",
-        ),
-    ] {
-        let ended = clamber(&["compare", &first, &other]);
-        let text = String::from_utf8(ended.stdout).unwrap();
-        assert_eq!(ended.status.code(), Some(code), "{text}");
-        assert!(text.contains(told), "{text}");
-    }
-    let ended = clamber(&["compare", &first, &recorded("ride", 1, 5)]);
-    let text = String::from_utf8(ended.stderr).unwrap();
-    assert_eq!(ended.status.code(), Some(2), "{text}");
-    assert!(text.contains("kinds of scene differ"), "{text}");
+    let again = recorded_duel("duel_again", None, 90);
+    let shorter = recorded_duel("duel_shorter", None, 50);
+    let other = recorded_duel("duel_other", Some(60), 90);
+    let archer = "the input of archer for the step to tick 61 differs";
+    let rows = [
+        (again, 0, "all 91 ticks are equal"),
+        (shorter, 1, "51 ticks are equal in every bit; then"),
+        (other, 1, archer),
+        (recorded("ride", 1, 5), 2, "kinds of scene differ"),
+    ];
+    compares(&first, &rows);
 }
 
 #[test]
@@ -354,54 +318,33 @@ fn a_body_is_printed_and_drawn_and_a_file_without_one_is_told() {
     let hero = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/hero.glb");
     let drawing = std::env::temp_dir().join(format!("clamber_body_{}.svg", std::process::id()));
     let path = drawing.to_str().unwrap();
-    let found = clamber(&["inspect", "--humanoid", "--draw", path, hero]);
-    let said = String::from_utf8(found.stdout).unwrap();
-    assert!(found.status.success(), "{said}");
-    assert!(said.contains("left hand          hand.L\n"), "{said}");
+    let text = said(&["inspect", "--humanoid", "--draw", path, hero], 0);
+    assert!(text.contains("left hand          hand.L\n"), "{text}");
     let svg = std::fs::read_to_string(&drawing).unwrap();
     std::fs::remove_file(&drawing).unwrap();
     assert!(svg.contains("left lower arm") && svg.matches("<circle").count() > 20);
 
     if let Some(file) = test_data::file("a file without a body", "models/greenman.glb") {
-        let none = clamber(&["inspect", "--humanoid", file.to_str().unwrap()]);
-        let said = String::from_utf8(none.stdout).unwrap();
-        assert_eq!(none.status.code(), Some(1), "{said}");
-        assert!(
-            said.contains("left upper arm") && said.contains("hand_L"),
-            "{said}"
-        );
+        let text = said(&["inspect", "--humanoid", file.to_str().unwrap()], 1);
+        let told = text.contains("left upper arm") && text.contains("hand_L");
+        assert!(told, "{text}");
     }
-    let refused = clamber(&[
-        "inspect",
-        "--humanoid",
-        "--draw",
-        "/no/such/folder/a.svg",
-        hero,
-    ]);
-    assert_eq!(refused.status.code(), Some(2));
-    let said = String::from_utf8(refused.stderr).unwrap();
-    assert!(said.contains("cannot draw /no/such/folder/a.svg"), "{said}");
-    assert_eq!(
-        clamber(&["inspect", "--draw", path, hero]).status.code(),
-        Some(2)
-    );
+    let nowhere = "/no/such/folder/a.svg";
+    let text = said(&["inspect", "--humanoid", "--draw", nowhere, hero], 2);
+    assert!(text.contains("cannot draw /no/such/folder/a.svg"), "{text}");
+    said(&["inspect", "--draw", path, hero], 2);
 }
 
 #[test]
 fn joints_are_printed_as_a_tree_and_a_brain_with_its_sizes() {
-    let giant = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
-    let brain = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../assets/colossus.brain.json"
-    );
-    let found = clamber(&["inspect", "--joints", giant]);
-    let said = String::from_utf8(found.stdout).unwrap();
-    assert!(found.status.success(), "{said}");
-    assert!(said.contains("40.991 units tall, posed at rest"), "{said}");
+    let (giant, brain) = (giant::path(), giant::brain_path());
+    let (giant, brain) = (giant.to_str().unwrap(), brain.to_str().unwrap());
+    let text = said(&["inspect", "--joints", giant], 0);
+    assert!(text.contains("40.991 units tall, posed at rest"), "{text}");
     // The foot is below the shin in space, and a child of it in the tree.
     let line = |name: &str| {
         let named = |line: &&str| line.split_whitespace().next() == Some(name);
-        said.lines().find(named).unwrap().to_owned()
+        text.lines().find(named).unwrap().to_owned()
     };
     let indent = |line: &str| line.len() - line.trim_start().len();
     let height = |line: &str| -> f64 { line.split_whitespace().nth(2).unwrap().parse().unwrap() };
@@ -412,15 +355,11 @@ fn joints_are_printed_as_a_tree_and_a_brain_with_its_sizes() {
         "{foot}"
     );
 
-    let found = clamber(&["inspect", "--brain", brain, "--creature", giant]);
-    let said = String::from_utf8(found.stdout).unwrap();
-    assert!(found.status.success(), "{said}");
-    assert!(said.contains("clips made for 41 m"), "{said}");
-    assert!(
-        said.contains("heights in a second of the clip, as told"),
-        "{said}"
-    );
-    assert!(!said.contains("WARNING"), "{said}");
+    let text = said(&["inspect", "--brain", brain, "--creature", giant], 0);
+    assert!(text.contains("clips made for 41 m"), "{text}");
+    let told = "heights in a second of the clip, as told";
+    assert!(text.contains(told), "{text}");
+    assert!(!text.contains("WARNING"), "{text}");
 }
 
 /// Guards the numbers of the giant's climbability: a change of the giant or of the graph that moves them fails here.
@@ -430,9 +369,8 @@ fn the_giant_can_be_climbed() {
     let giant = giant.to_str().unwrap();
     let fur_and_stone = ["climbability", giant, "--grip", "fur,stone", "--json"];
     let wanted = ["--require", "weak_points>=3", "--require", "reachable>0.85"];
-    let ended = clamber(&[&fur_and_stone[..], &wanted[..]].concat());
-    assert!(ended.status.success(), "{ended:?}");
-    let report: serde_json::Value = serde_json::from_slice(&ended.stdout).unwrap();
+    let text = said(&[&fur_and_stone[..], &wanted[..]].concat(), 0);
+    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
     let close = |name: &str, wanted: f64| {
         let found = report[name].as_f64().unwrap();
         assert!(
@@ -475,9 +413,7 @@ fn climbability_refuses_what_it_does_not_know() {
         ["--height", "-1"],
         ["--grip", "ice"],
     ] {
-        let ended = clamber(&[&["climbability", giant], &wrong[..]].concat());
-        let error = String::from_utf8(ended.stderr).unwrap();
-        assert_eq!(ended.status.code(), Some(2), "{wrong:?}: {error}");
+        let error = said(&[&["climbability", giant], &wrong[..]].concat(), 2);
         assert!(!error.contains("panicked"), "{error}");
     }
 }

@@ -1,8 +1,5 @@
 //! The commands of `clamber`.
 
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test's helpers may fail like the test"
-)]
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod commands;

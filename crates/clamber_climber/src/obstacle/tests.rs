@@ -104,11 +104,8 @@ fn sweeps_agree_with_small_steps() {
                 .with_ends_moved(displacement(hit.fraction))
                 .nearest_on_axis(hit.contact.point);
             let distance = away.distance(hit.contact.point);
-            assert!(
-                (distance - other.radius).abs() < 2e-4 || hit.started_inside,
-                "{}",
-                told()
-            );
+            let is_on = (distance - other.radius).abs() < 2e-4;
+            assert!(is_on || hit.started_inside, "{}", told());
             met += 1;
         } else if let Some(hit) = hit {
             let is_near = gap(hit.fraction) <= other.sweep_tolerance() + 1e-9;
@@ -174,6 +171,8 @@ fn climbers_of_a_crowd_stop_each_other_in_any_step_order() {
 #[test]
 fn invalid_queries_find_nothing() {
     let body = solid(WorldCapsule::ball(DVec3::ZERO, 0.5), DVec3::ZERO);
+    let cast = |ball: &WorldCapsule, way, target| body.cast_capsule(ball, [way; 2], target);
+    let (still, moving) = (TargetMotion::Still, TargetMotion::Moving);
     let mut contacts = Vec::new();
     for bad in [f64::NAN, -1.0, f64::NEG_INFINITY] {
         let ray = body.cast_ray(DVec3::X * 2.0, -DVec3::X, bad);
@@ -183,14 +182,8 @@ fn invalid_queries_find_nothing() {
         assert_eq!(body.closest_point(DVec3::ZERO, bad), None);
         let ball = WorldCapsule::ball(DVec3::ZERO, bad);
         body.overlap_capsule(&ball, &mut contacts);
-        assert_eq!(
-            body.cast_capsule(&ball, [DVec3::X; 2], TargetMotion::Still),
-            None
-        );
-        assert_eq!(
-            body.cast_capsule(&ball, [DVec3::X; 2], TargetMotion::Moving),
-            None
-        );
+        assert_eq!(cast(&ball, DVec3::X, still), None);
+        assert_eq!(cast(&ball, DVec3::X, moving), None);
     }
     for bad in [DVec3::NAN, DVec3::INFINITY] {
         let ball = WorldCapsule::ball(bad, 0.1);
@@ -198,18 +191,9 @@ fn invalid_queries_find_nothing() {
         assert_eq!(body.cast_ray(bad, DVec3::X, 9.0), None);
         assert_eq!(body.cast_ray(DVec3::X, bad, 9.0), None);
         assert_eq!(body.closest_point(bad, 9.0), None);
-        assert_eq!(
-            body.cast_capsule(&ball, [DVec3::X; 2], TargetMotion::Still),
-            None
-        );
-        assert_eq!(
-            body.cast_capsule(
-                &WorldCapsule::ball(DVec3::X, 0.1),
-                [bad; 2],
-                TargetMotion::Moving
-            ),
-            None
-        );
+        assert_eq!(cast(&ball, DVec3::X, still), None);
+        let ball = WorldCapsule::ball(DVec3::X, 0.1);
+        assert_eq!(cast(&ball, bad, moving), None);
     }
     assert!(contacts.is_empty(), "{contacts:?}");
     let ray = body

@@ -37,7 +37,6 @@ fn a_shake_uses_up_a_budget_in_the_same_time_at_any_tick_rate() {
     );
     for hz in [30.0, 60.0, 120.0, 240.0] {
         let (time, peak) = at(hz);
-        println!("{hz} Hz: {time} s, peak {peak}; at 240 Hz {exact} s");
         // At 30 Hz ten ticks per swing, otherwise more.
         let share = if hz < 60.0 { 0.05 } else { 0.03 };
         assert!(
@@ -111,7 +110,6 @@ fn noise_of_a_millimetre_stays_small() {
             shake.step(change, TIME_CONSTANT, 1.0 / hz);
             peak = peak.max(shake.acceleration.length());
         }
-        println!("noise at {hz} Hz: {peak} m/s^2");
         // Below half of gravity at 60 Hz, where no threshold lies.
         assert!(peak < 4.0 * hz / 60.0, "{hz} Hz: {peak}");
     }

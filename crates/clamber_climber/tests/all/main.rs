@@ -7,9 +7,12 @@
 )]
 
 // Scenes and helpers.
+mod cases;
 #[path = "../golden/creature.rs"]
 mod creature;
+mod events;
 mod held;
+mod input;
 mod moving;
 mod numbers;
 mod scene;

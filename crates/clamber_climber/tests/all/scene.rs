@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepReport,
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
 };
 use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource, SurfaceKind, SurfaceTag};
@@ -21,15 +21,16 @@ pub(crate) const FUR: SurfaceTag = SurfaceTag::new(SurfaceKind::Fur);
 /// The tag of stone with a ledge, which cannot be gripped.
 pub(crate) const STONE: SurfaceTag = SurfaceTag::new(SurfaceKind::Stone);
 
-/// Input that only holds the grip.
-pub(crate) const HOLD: ClimberInput = ClimberInput {
-    grip: true,
-    ..ClimberInput::IDLE
-};
-
 /// A closed box about the origin, its faces in squares of about a metre.
 pub(crate) fn cuboid(half: Vec3, tag: SurfaceTag) -> SkinnedSurface {
     cuboid_with(half, |_| tag)
+}
+
+/// A [`cuboid`] at a place.
+pub(crate) fn cuboid_at(half: Vec3, tag: SurfaceTag, place: DVec3) -> SkinnedSurface {
+    let mut surface = cuboid(half, tag);
+    placed(&mut surface, place);
+    surface
 }
 
 /// A [`cuboid`] with a tag for each triangle, chosen by the triangle's centre.
@@ -68,24 +69,47 @@ pub(crate) fn cuboid_with(half: Vec3, tag: impl Fn(Vec3) -> SurfaceTag) -> Skinn
             }
         }
     }
+    tagged(&positions, &triangles, &tags)
+}
+
+/// A surface on one joint, with a tag for each triangle.
+pub(crate) fn tagged(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    tags: &[SurfaceTag],
+) -> SkinnedSurface {
     let source = MeshSource {
-        tags: &tags,
-        ..MeshSource::rigid(&positions, &triangles)
+        tags,
+        ..MeshSource::rigid(positions, triangles)
     };
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }
 
-pub(crate) fn placed(surface: &mut SkinnedSurface, translation: DVec3, rotation: DQuat) {
-    surface
-        .place(&rest(), similarity(translation, rotation))
-        .unwrap();
+/// Places a surface.
+pub(crate) fn placed(surface: &mut SkinnedSurface, translation: DVec3) {
+    placed_turned(surface, translation, DQuat::IDENTITY);
 }
 
-pub(crate) fn moved(surface: &mut SkinnedSurface, translation: DVec3, rotation: DQuat) {
-    surface
-        .advance(&rest(), similarity(translation, rotation))
-        .unwrap();
+pub(crate) fn placed_turned(surface: &mut SkinnedSurface, translation: DVec3, rotation: DQuat) {
+    let place = similarity(translation, rotation);
+    surface.place(&rest(), place).unwrap();
+}
+
+/// Moves a surface within a tick.
+pub(crate) fn moved(surface: &mut SkinnedSurface, translation: DVec3) {
+    moved_turned(surface, translation, DQuat::IDENTITY);
+}
+
+pub(crate) fn moved_turned(surface: &mut SkinnedSurface, translation: DVec3, rotation: DQuat) {
+    let place = similarity(translation, rotation);
+    surface.advance(&rest(), place).unwrap();
+}
+
+/// Places a surface in the first tick, and moves it in every other one.
+pub(crate) fn placed_or_moved(surface: &mut SkinnedSurface, translation: DVec3, tick: u32) {
+    let set = if tick == 0 { placed } else { moved };
+    set(surface, translation);
 }
 
 /// Scales a surface to a tenth about its own origin.
@@ -97,7 +121,8 @@ pub(crate) fn scaled_down(surface: &mut SkinnedSurface) {
     surface.place(&rest(), world_from_model).unwrap();
 }
 
-fn rest() -> Palette {
+/// The pose of a surface's only joint.
+pub(crate) fn rest() -> Palette {
     Palette::from_matrices([Affine::IDENTITY])
 }
 
@@ -109,8 +134,55 @@ fn similarity(translation: DVec3, rotation: DQuat) -> Similarity {
     }
 }
 
+/// A climber with every ability.
 pub(crate) fn climber(position: DVec3) -> Climber {
     Climber::new(ClimberConfig::colossus_climber(), position).unwrap()
+}
+
+/// A climber that only walks and jumps.
+pub(crate) fn walker(position: DVec3) -> Climber {
+    Climber::new(ClimberConfig::walker(), position).unwrap()
+}
+
+/// Sets a climber's velocity and the velocity of its frame.
+pub(crate) fn throw(climber: &mut Climber, velocity: DVec3, base_velocity: DVec3) {
+    let state = ClimberState {
+        velocity,
+        base_velocity,
+        ..*climber.state()
+    };
+    climber.restore(state).unwrap();
+}
+
+/// Sets a climber's position and velocity, and keeps the rest of its state.
+pub(crate) fn put(climber: &mut Climber, position: DVec3, velocity: DVec3) {
+    let state = ClimberState {
+        position,
+        velocity,
+        ..*climber.state()
+    };
+    climber.restore(state).unwrap();
+}
+
+/// Obstacles with the ids 0, 1, 2 and so on.
+pub(crate) fn list<'a>(obstacles: &[&'a dyn Obstacle]) -> Vec<(ObstacleId, &'a dyn Obstacle)> {
+    let ids = (0..).map(ObstacleId);
+    ids.zip(obstacles.iter().copied()).collect()
+}
+
+/// [`list`] of obstacles of any types.
+pub(crate) fn list_owned(owned: &[Box<dyn Obstacle>]) -> Vec<(ObstacleId, &dyn Obstacle)> {
+    let each: Vec<_> = owned.iter().map(|obstacle| &**obstacle).collect();
+    list(&each)
+}
+
+/// Steps a climber by one tick at 60 Hz.
+pub(crate) fn tick_among(
+    climber: &mut Climber,
+    obstacles: &[&dyn Obstacle],
+    input: &ClimberInput,
+) -> StepReport {
+    climber.step(input, &list(obstacles), DT).unwrap()
 }
 
 /// Steps the climber by one tick among some surfaces.
@@ -119,11 +191,8 @@ pub(crate) fn step(
     surfaces: &[&SkinnedSurface],
     input: &ClimberInput,
 ) -> StepReport {
-    let ids = (0..).map(ObstacleId);
-    let obstacles: Vec<_> = ids
-        .zip(surfaces.iter().map(|surface| *surface as &dyn Obstacle))
-        .collect();
-    let report = climber.step(input, &obstacles, DT).unwrap();
+    let obstacles: Vec<_> = surfaces.iter().map(|one| *one as &dyn Obstacle).collect();
+    let report = tick_among(climber, &obstacles, input);
     let state = climber.state();
     assert!(report.is_clear, "{report:?} {state:?}");
     assert!(report.penetration < 1e-3, "{report:?} {state:?}");

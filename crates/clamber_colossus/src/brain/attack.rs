@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::BrainProblem;
-use super::compile::{check_seconds, out_of_range};
+use super::compile::{check, check_above, check_seconds};
 
 /// The longest flight of a shot, and the longest time in which a wave reaches its radius, seconds.
 const LONGEST_FLIGHT: f64 = 60.0;
@@ -214,9 +214,8 @@ impl Wave {
         check_above(radius, self.radius, 1e6, UP_TO_MILLION)?;
         if let Some(found) = self.speed {
             check_above(speed, found, 1e6, UP_TO_MILLION)?;
-            if found * LONGEST_FLIGHT < self.radius {
-                return Err(out_of_range(speed, "at least its radius / 60", found));
-            }
+            let is_enough = found * LONGEST_FLIGHT >= self.radius;
+            check(is_enough, speed, "at least its radius / 60", found)?;
         }
         match self.height {
             Some(found) => check_above(height, found, 1e6, UP_TO_MILLION),
@@ -247,13 +246,8 @@ impl Shot {
             LONGEST_FLIGHT,
             "more than 0 and at most 60",
         )?;
-        if !(0.0..=STRONGEST_GRAVITY).contains(&self.gravity) {
-            return Err(out_of_range(
-                "shot.gravity",
-                "from 0 to 1,000",
-                self.gravity,
-            ));
-        }
+        let is_within = (0.0..=STRONGEST_GRAVITY).contains(&self.gravity);
+        check(is_within, "shot.gravity", "from 0 to 1,000", self.gravity)?;
         self.wave
             .as_ref()
             .map_or(Ok(()), |wave| wave.check(&SHOT_WAVE))
@@ -266,23 +260,9 @@ fn strikes(damage: f64, throw: f64) -> bool {
 }
 
 fn check_blow(names: [&'static str; 2], damage: f64, throw: f64) -> Result<(), BrainProblem> {
-    if !(0.0..=1.0).contains(&damage) {
-        return Err(out_of_range(names[0], "from 0 to 1", damage));
-    }
+    let is_share = (0.0..=1.0).contains(&damage);
+    check(is_share, names[0], "from 0 to 1", damage)?;
     check_seconds(names[1], throw)
-}
-
-fn check_above(
-    what: &'static str,
-    found: f64,
-    most: f64,
-    range: &'static str,
-) -> Result<(), BrainProblem> {
-    if found > 0.0 && found <= most {
-        Ok(())
-    } else {
-        Err(out_of_range(what, range, found))
-    }
 }
 
 fn is_zero(value: &f64) -> bool {

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::condition::Condition;
+use super::error::whole;
 use super::locate::{Lines, state_on};
 use super::{
     After, Brain, BrainError, BrainFile, BrainProblem, DEFAULT_FADE, Gaze, MOST_DEPTH, MOST_MOODS,
@@ -18,12 +19,8 @@ impl Brain {
     /// [`BrainError`], with the line and the state if they are known.
     pub fn from_json(text: &str, tick: f64) -> Result<Self, BrainError> {
         let file: BrainFile = serde_json::from_str(text).map_err(|error| {
-            let line = error.line();
-            BrainError {
-                line: (line > 0).then_some(line),
-                state: state_on(text, line),
-                problem: Box::new(BrainProblem::Text(without_place(&error.to_string()))),
-            }
+            let problem = BrainProblem::Text(without_place(&error.to_string()));
+            BrainError::new(error.line(), state_on(text, error.line()), problem)
         })?;
         Compiler::new(&file, tick, Lines::of(text)).compile()
     }
@@ -60,16 +57,15 @@ impl<'a> Compiler<'a> {
 
     fn compile(mut self) -> Result<Brain, BrainError> {
         let tick = self.tick;
-        if !(tick > 0.0 && tick.is_finite()) {
-            return Err(self.whole(out_of_range("tick", "finite and more than 0", tick)));
-        }
+        let has_tick = tick > 0.0 && tick.is_finite();
+        check(has_tick, "tick", "finite and more than 0", tick).map_err(whole)?;
         for (what, found, most) in [
             ("states", count(&self.file.states), MOST_STATES),
             ("moods", self.file.moods.len(), MOST_MOODS),
             ("regions", self.file.regions.len(), MOST_REGIONS),
         ] {
             if found > most {
-                return Err(self.whole(too_many(what, found, most)));
+                return Err(whole(too_many(what, found, most)));
             }
         }
         self.check_names()?;
@@ -79,7 +75,7 @@ impl<'a> Compiler<'a> {
             self.start_of(index)?;
         }
         let start = self.find(&self.file.start);
-        let start = start.map_err(|problem| self.at(self.lines.start(), problem))?;
+        let start = start.map_err(|problem| BrainError::new(self.lines.start(), None, problem))?;
         let transitions = self.transitions()?;
         let mut brain = Brain {
             file: self.file.clone(),
@@ -108,11 +104,7 @@ impl<'a> Compiler<'a> {
                 (format!("{}/{name}", outer.path), outer.depth + 1)
             });
             let line = self.lines.state(&path);
-            let here = |problem| BrainError {
-                line: (line > 0).then_some(line),
-                state: Some(path.clone()),
-                problem: Box::new(problem),
-            };
+            let here = |problem| BrainError::new(line, Some(path.clone()), problem);
             if name.is_empty() || name.contains('/') {
                 let problem = "a state's name is empty or has a slash in it";
                 return Err(here(BrainProblem::Text(problem.into())));
@@ -170,14 +162,13 @@ impl<'a> Compiler<'a> {
     fn moods(&self) -> Result<Vec<Mood>, BrainError> {
         let mut moods = Vec::new();
         for (name, file) in &self.file.moods {
-            let here = |problem| self.at(self.lines.mood(name), problem);
+            let here = |problem| BrainError::new(self.lines.mood(name), None, problem);
             check_seconds("fades", file.fades).map_err(here)?;
             let fades = Brain::ticks(file.fades, self.tick).max(1);
             let mut raised = Vec::new();
             for raise in &file.raised {
-                if !(0.0..=1.0).contains(&raise.to) {
-                    return Err(here(out_of_range("to", "from 0 to 1", raise.to)));
-                }
+                let is_share = (0.0..=1.0).contains(&raise.to);
+                check(is_share, "to", "from 0 to 1", raise.to).map_err(here)?;
                 let when = self.conditions(&raise.when).map_err(here)?;
                 let to = (raise.to * f64::from(fades)).round() as u32;
                 raised.push((when, to));
@@ -194,9 +185,9 @@ impl<'a> Compiler<'a> {
         let start = self.find(name);
         let start = start.map_err(|problem| self.in_state(index, problem))?;
         if self.states[start.index()].parent != Some(StateId(index as u16)) {
-            let known = list(self.files[index].states.keys());
-            let (what, name) = ("state inside it called", name.clone());
-            return Err(self.in_state(index, BrainProblem::Unknown { what, name, known }));
+            let known = self.files[index].states.keys();
+            let problem = BrainProblem::unknown("state inside it called", name, known);
+            return Err(self.in_state(index, problem));
         }
         self.states[index].start = Some(start);
         Ok(())
@@ -210,16 +201,10 @@ impl<'a> Compiler<'a> {
                 let path = self.states[index].path.clone();
                 let line = self.lines.transition(&path, number);
                 let transition = self.transition(StateId(index as u16), file, line);
-                let transition = transition.map_err(|problem| BrainError {
-                    line: (line > 0).then_some(line),
-                    state: Some(path),
-                    problem: Box::new(problem),
-                })?;
-                let number = all.len() as u64;
-                all.push(Transition {
-                    number,
-                    ..transition
-                });
+                let mut transition =
+                    transition.map_err(|problem| BrainError::new(line, Some(path), problem))?;
+                transition.number = all.len() as u64;
+                all.push(transition);
             }
             self.states[index].transitions = first..all.len();
         }
@@ -233,13 +218,7 @@ impl<'a> Compiler<'a> {
         line: usize,
     ) -> Result<Transition, BrainProblem> {
         let weight = file.weight.unwrap_or(1.0);
-        if !(weight > 0.0 && weight <= MOST_WEIGHT) {
-            return Err(out_of_range(
-                "weight",
-                "more than 0 and at most 1e9",
-                weight,
-            ));
-        }
+        check_above("weight", weight, MOST_WEIGHT, "more than 0 and at most 1e9")?;
         let after = match file.after {
             None => [0.0; 2],
             Some(After::Fixed(seconds)) => [seconds; 2],
@@ -248,9 +227,8 @@ impl<'a> Compiler<'a> {
         for seconds in after {
             check_seconds("after", seconds)?;
         }
-        if after[0] > after[1] {
-            return Err(out_of_range("after", "in ascending order", after[0]));
-        }
+        let is_ascending = after[0] <= after[1];
+        check(is_ascending, "after", "in ascending order", after[0])?;
         Ok(Transition {
             number: 0,
             from,
@@ -278,11 +256,7 @@ impl<'a> Compiler<'a> {
 
     fn find(&self, name: &str) -> Result<StateId, BrainProblem> {
         let found = self.ids.get(name).copied();
-        found.ok_or_else(|| BrainProblem::Unknown {
-            what: "state",
-            name: name.to_owned(),
-            known: list(self.ids.keys()),
-        })
+        found.ok_or_else(|| BrainProblem::unknown("state", name, self.ids.keys()))
     }
 
     /// Refuses transitions without conditions that form a cycle, or a chain longer than [`MOST_TRANSITIONS`].
@@ -291,49 +265,23 @@ impl<'a> Compiler<'a> {
             let mut way = vec![brain.innermost(first)];
             while let Some(next) = brain.instant_from(way[way.len() - 1]) {
                 let next = brain.innermost(next);
-                let here = |problem| BrainError {
-                    line: brain.line(first),
-                    state: Some(brain.path(first).to_owned()),
-                    problem: Box::new(problem),
-                };
                 if way.contains(&next) {
                     way.push(next);
                     let way: Vec<&str> = way.iter().map(|state| brain.path(*state)).collect();
-                    return Err(here(BrainProblem::Circle(way.join(" -> "))));
+                    return Err(brain.error_in(first, BrainProblem::Circle(way.join(" -> "))));
                 }
                 way.push(next);
                 if way.len() > MOST_TRANSITIONS {
-                    return Err(here(BrainProblem::Chain(way.len() - 1)));
+                    return Err(brain.error_in(first, BrainProblem::Chain(way.len() - 1)));
                 }
             }
         }
         Ok(())
     }
 
-    fn whole(&self, problem: BrainProblem) -> BrainError {
-        BrainError {
-            line: None,
-            state: None,
-            problem: Box::new(problem),
-        }
-    }
-
     fn in_state(&self, index: usize, problem: BrainProblem) -> BrainError {
         let state = &self.states[index];
-        BrainError {
-            line: (state.line > 0).then_some(state.line),
-            state: Some(state.path.clone()),
-            problem: Box::new(problem),
-        }
-    }
-
-    /// An error on a line outside of all states.
-    fn at(&self, line: usize, problem: BrainProblem) -> BrainError {
-        BrainError {
-            line: (line > 0).then_some(line),
-            state: None,
-            problem: Box::new(problem),
-        }
+        BrainError::new(state.line, Some(state.path.clone()), problem)
     }
 
     /// Refuses a mood, or one of the game's own senses, whose name is already taken: no condition could read it.
@@ -342,7 +290,7 @@ impl<'a> Compiler<'a> {
         for name in self.file.moods.keys().chain(&self.file.senses) {
             if !known.insert(name) {
                 let (what, name) = ("senses or moods", name.clone());
-                return Err(self.whole(BrainProblem::Twice { what, name }));
+                return Err(whole(BrainProblem::Twice { what, name }));
             }
         }
         Ok(())
@@ -353,17 +301,12 @@ impl Brain {
     /// The target of the transition without conditions that leaves this state at once; `None` without such a
     /// transition, or if the state's act has to end first.
     fn instant_from(&self, state: StateId) -> Option<StateId> {
-        let around = self.around(state).flat_map(|outer| {
-            let range = self
-                .state(outer)
-                .map_or(0..0, |state| state.transitions.clone());
-            self.transitions[range].iter()
-        });
-        let instant = around.filter(|transition| transition.is_instant());
         if self.is_final(state) || self.act(state).is_some_and(super::StateAction::is_whole) {
             return None;
         }
         // The first transition of the highest priority.
+        let leaving = self.leaving(state);
+        let instant = leaving.filter(|transition| transition.is_instant());
         let best = instant.reduce(|best, next| {
             if next.priority > best.priority {
                 next
@@ -393,19 +336,47 @@ fn check_act(file: &StateFile) -> Result<(), BrainProblem> {
 
 /// Refuses times and lengths that are not finite, negative, or more than 1,000,000.
 pub(super) fn check_seconds(what: &'static str, found: f64) -> Result<(), BrainProblem> {
-    if (0.0..=1e6).contains(&found) {
-        Ok(())
-    } else {
-        Err(out_of_range(what, "from 0 to 1,000,000", found))
-    }
+    let is_within = (0.0..=1e6).contains(&found);
+    check(is_within, what, "from 0 to 1,000,000", found)
 }
 
-pub(super) fn out_of_range(what: &'static str, range: &'static str, found: f64) -> BrainProblem {
-    BrainProblem::OutOfRange { what, range, found }
+/// Refuses numbers that are 0, negative, or more than `most`.
+pub(super) fn check_above(
+    what: &'static str,
+    found: f64,
+    most: f64,
+    range: &'static str,
+) -> Result<(), BrainProblem> {
+    check(found > 0.0 && found <= most, what, range, found)
+}
+
+/// Refuses a number that is not within its range.
+pub(crate) fn check(
+    is_within: bool,
+    what: &'static str,
+    range: &'static str,
+    found: f64,
+) -> Result<(), BrainProblem> {
+    if is_within {
+        return Ok(());
+    }
+    Err(BrainProblem::OutOfRange { what, range, found })
 }
 
 fn too_many(what: &'static str, found: usize, most: usize) -> BrainProblem {
     BrainProblem::TooMany { what, found, most }
+}
+
+impl BrainProblem {
+    /// A name that is not among the known names.
+    pub(crate) fn unknown<S: AsRef<str>>(
+        what: &'static str,
+        name: &str,
+        known: impl IntoIterator<Item = S>,
+    ) -> Self {
+        let (name, known) = (name.to_owned(), list(known));
+        Self::Unknown { what, name, known }
+    }
 }
 
 /// A comma-separated list of names, for error messages.
@@ -424,11 +395,8 @@ pub(crate) fn list<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> String 
 impl Brain {
     /// An error in a state, with the state's line.
     pub(crate) fn error_in(&self, state: StateId, problem: BrainProblem) -> BrainError {
-        BrainError {
-            line: self.line(state),
-            state: Some(self.path(state).to_owned()),
-            problem: Box::new(problem),
-        }
+        let line = self.line(state).unwrap_or(0);
+        BrainError::new(line, Some(self.path(state).to_owned()), problem)
     }
 }
 

@@ -13,6 +13,22 @@ pub struct BrainError {
     pub problem: Box<BrainProblem>,
 }
 
+impl BrainError {
+    /// An error on a line, or on none if `line` is 0.
+    pub(crate) fn new(line: usize, state: Option<String>, problem: BrainProblem) -> Self {
+        Self {
+            line: (line > 0).then_some(line),
+            state,
+            problem: Box::new(problem),
+        }
+    }
+}
+
+/// An error of the whole brain, without a state and a line.
+pub(crate) fn whole(problem: BrainProblem) -> BrainError {
+    BrainError::new(0, None, problem)
+}
+
 impl fmt::Display for BrainError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(line) = self.line {

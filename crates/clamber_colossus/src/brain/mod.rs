@@ -12,7 +12,8 @@ pub(crate) mod unique;
 
 pub(crate) use attack::WaveOf;
 pub use attack::{Attack, Beam, Shot, Wave};
-pub(crate) use compile::list;
+pub(crate) use compile::{check, list};
+pub(crate) use error::whole;
 
 use condition::Condition;
 pub use error::{BrainError, BrainProblem};

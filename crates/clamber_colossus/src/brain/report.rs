@@ -147,28 +147,17 @@ impl Brain {
         }
         for transition in &self.transitions {
             let what = if let Some(name) = self.contradiction(transition) {
-                format!(
-                    "to `{}`: its conditions on {name} cannot hold together",
-                    self.path(transition.to)
-                )
+                format!("its conditions on {name} cannot hold together")
             } else if let Some(marker) = self.missing_marker(transition, has) {
-                format!(
-                    "to `{}`: no clip of the state has a marker `{marker}`",
-                    self.path(transition.to)
-                )
+                format!("no clip of the state has a marker `{marker}`")
             } else if self.waits_for_no_end(transition) {
-                format!(
-                    "to `{}`: its act has no end, so `done` never holds",
-                    self.path(transition.to)
-                )
+                "its act has no end, so `done` never holds".into()
             } else if self.is_hidden(transition) {
-                format!(
-                    "to `{}`: another transition is always taken before it",
-                    self.path(transition.to)
-                )
+                "another transition is always taken before it".into()
             } else {
                 continue;
             };
+            let what = format!("to `{}`: {what}", self.path(transition.to));
             never.push(self.tell(transition.line, transition.from, &what));
         }
         let finals: Vec<StateId> = self.states().filter(|id| self.is_final(*id)).collect();
@@ -197,7 +186,7 @@ impl Brain {
     }
 
     /// The transitions out of a state and out of its outer states.
-    fn leaving(&self, state: StateId) -> impl Iterator<Item = &Transition> {
+    pub(super) fn leaving(&self, state: StateId) -> impl Iterator<Item = &Transition> {
         let around = self.around(state);
         around.flat_map(|outer| {
             let range = self.states[outer.index()].transitions.clone();
@@ -263,20 +252,15 @@ impl Brain {
         has: &dyn Fn(&str, &str) -> bool,
     ) -> Option<String> {
         let wanted = transition.on.as_ref()?;
-        let mut clips = self
+        let within = |state: &StateId| self.is_within(*state, transition.from);
+        let mut acts = self
             .states()
-            .filter(|state| self.is_within(*state, transition.from))
-            .map(|state| {
-                (
-                    self.act(state),
-                    self.act(state).and_then(super::StateAction::clip),
-                )
-            });
-        let found = clips.any(|(act, clip)| match (act, clip) {
+            .filter(within)
+            .filter_map(|state| self.act(state));
+        let found = acts.any(|act| match act {
             // Walks and turns play clips of the gait, which are not known here.
-            (Some(super::StateAction::Walk(_) | super::StateAction::Turn(_)), _) => true,
-            (_, Some(clip)) => has(clip, wanted),
-            _ => false,
+            super::StateAction::Walk(_) | super::StateAction::Turn(_) => true,
+            act => act.clip().is_some_and(|clip| has(clip, wanted)),
         });
         (!found).then(|| wanted.clone())
     }

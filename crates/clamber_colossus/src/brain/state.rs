@@ -224,10 +224,7 @@ impl Brain {
                 && (!is_bound || transition.interrupts && !at_once)
                 && self.is_open(state, transition, senses, passed)
         };
-        let all = || {
-            let ranges = self.around(current).filter_map(|outer| self.state(outer));
-            ranges.flat_map(|outer| self.transitions[outer.transitions.clone()].iter())
-        };
+        let all = || self.leaving(current);
         let priority = all()
             .filter(can)
             .map(|transition| transition.priority)

@@ -113,7 +113,8 @@ impl Creature {
             from: motion.previous_position,
             to: motion.position,
             turn: motion.turn,
-            yaw: yaw_of(motion.turn),
+            // The twist about Y.
+            yaw: nearest_turn(2.0 * libm::atan2(motion.turn.y, motion.turn.w)),
         };
         if !self.is_broad(&carried, around, dt) {
             return false;
@@ -243,9 +244,4 @@ impl Creature {
 fn point_motion(around: &Surroundings<'_>, point: &GroundPoint, dt: f64) -> Option<PointMotion> {
     let obstacle = around.terrain.get(point.obstacle as usize)?;
     obstacle.motion(&point.material, dt)
-}
-
-/// Yaw of a rotation, radians: its twist about Y.
-fn yaw_of(turn: DQuat) -> f64 {
-    nearest_turn(2.0 * libm::atan2(turn.y, turn.w))
 }

@@ -2,7 +2,6 @@
 //! senses are one tick old.
 
 use clamber_animation::rig::JointId;
-use clamber_surface::mesh::TriangleId;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -157,9 +156,8 @@ impl Creature {
     fn feel_riders(&mut self, people: &[Person], senses: &mut Senses) {
         let tick = self.kind.brain().tick();
         let leap = (LONGEST_LEAP / tick).round() as u32;
-        let mesh = self.surface.mesh();
         let origin = self.state.position();
-        let rides = &mut self.state.perceived.rides;
+        let mut rides = std::mem::take(&mut self.state.perceived.rides);
         for ride in rides.iter_mut() {
             ride.off = ride.off.saturating_add(1);
             ride.ticks = ride.ticks.saturating_add(1);
@@ -169,13 +167,11 @@ impl Creature {
             let Some(riding) = person.riding else {
                 continue;
             };
-            let triangle = u32::try_from(riding.at.key).ok().map(TriangleId);
-            let joint = triangle.and_then(|triangle| mesh.joint_of(triangle));
-            let Some(JointId(joint)) = joint else {
+            let Some(JointId(joint)) = self.joint_at(&riding.at) else {
                 continue;
             };
             highest = highest.max(person.middle().y - origin.y);
-            hanging += f64::from(u8::from(riding.hangs));
+            hanging += f64::from(riding.hangs);
             match rides.iter_mut().find(|ride| ride.person == person.id) {
                 Some(ride) => (ride.joint, ride.off) = (joint, 0),
                 None => rides.push(Ride {
@@ -209,6 +205,7 @@ impl Creature {
                 longest.map_or(0.0, seconds),
             );
         }
+        self.state.perceived.rides = rides;
     }
 
     fn feel_wounds(&mut self, senses: &mut Senses) {
@@ -275,7 +272,7 @@ impl Creature {
             Some((_, id, place)) => (perceived.prey, perceived.unseen) = (Some((id, place)), 0),
             None => perceived.unseen = perceived.unseen.saturating_add(1),
         }
-        senses.set(Sense::PreySeen, f64::from(u8::from(seen)));
+        senses.set(Sense::PreySeen, f64::from(seen));
         senses.set(Sense::Underfoot, underfoot as f64);
         if let Some(place) = self.state.perceived.prey() {
             let way = place - self.state.position();

@@ -83,11 +83,6 @@ impl Hips {
         !self.waits
     }
 
-    /// Begins a tremor after an impact: the hips accelerate by at most `acceleration`, metres a second squared.
-    fn strike(&mut self, acceleration: f64, rate: f64) {
-        self.tremor[1] -= acceleration / rate;
-    }
-
     /// Advances the tremor by a tick, with the exact solution of a damped oscillator.
     fn ring(&mut self, rate: f64, dt: f64) {
         let [x, v] = self.tremor;
@@ -212,7 +207,7 @@ impl Creature {
                 super::CreatureEvent::Plant { .. } => STEP_TREMOR,
                 _ => continue,
             };
-            self.state.hips.strike(share * most, rate);
+            self.state.hips.tremor[1] -= share * most / rate;
         }
     }
 

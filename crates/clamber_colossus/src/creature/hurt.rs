@@ -1,6 +1,5 @@
 //! Damage to a creature: wounds of weak points, blows to plates.
 
-use clamber_surface::mesh::TriangleId;
 use clamber_world::MaterialPoint;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -147,9 +146,7 @@ impl Creature {
         if !wound.place.is_finite() || !(0.0..=f64::MAX).contains(&wound.damage) {
             return 0.0;
         }
-        let triangle = u32::try_from(wound.at.key).ok().map(TriangleId);
-        let joint = triangle.and_then(|triangle| self.surface.mesh().joint_of(triangle));
-        let Some(joint) = joint else {
+        let Some(joint) = self.joint_at(&wound.at) else {
             return 0.0;
         };
         let done = match self.struck_at(&wound.at, wound.place) {
@@ -190,8 +187,8 @@ impl Creature {
     /// Finds the open weak point that a blow at a point of the skin would strike, and the unbroken plate that would
     /// take the blow instead. Returns their indices.
     pub fn struck_at(&self, at: &MaterialPoint, place: DVec3) -> (Option<usize>, Option<usize>) {
-        let triangle = u32::try_from(at.key).ok().map(TriangleId);
-        let plate = triangle
+        let plate = at
+            .triangle()
             .and_then(|triangle| self.kind.plate_of(triangle))
             .filter(|plate| self.state.plate(*plate) > 0);
         // The weak points are where they are at the end of the tick, so take the struck point where it is then.

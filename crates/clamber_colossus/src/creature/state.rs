@@ -231,62 +231,38 @@ impl CreatureState {
         if self.sound.0 == kind.number() {
             return Ok(());
         }
-        self.check_parts(kind)?;
-        self.check_acts(kind)?;
-        if !self.is_within_range() {
-            return Err(ColossusError::OtherKind(
-                "its place or its motion is no number that a creature reaches",
-            ));
-        }
-        self.check_pose(kind)
-    }
-
-    /// Refuses a state with other states of the brain, legs, joints, weak points or plates than the kind has.
-    fn check_parts(&self, kind: &CreatureKind) -> Result<(), ColossusError> {
         let brain = kind.brain();
         let (regions, own) = (brain.regions().len(), brain.own_senses().len());
-        if !self.brain.fits(brain) || !self.senses.fits(regions, own) {
-            return Err(ColossusError::OtherKind("its brain has other states"));
-        }
-        if self.feet.len() != kind.legs().len() {
-            return Err(ColossusError::OtherKind("it has another number of legs"));
-        }
-        if self.pose.transforms.len() != kind.skeleton().joints().len() {
-            return Err(ColossusError::OtherKind("it has another number of joints"));
-        }
-        if self.hit_points().len() != kind.weak_points().len() {
-            return Err(ColossusError::OtherKind(
-                "it has another number of weak points",
-            ));
-        }
-        if !self.damage.is_valid() || !self.perceived.has_valid_walls() {
-            return Err(ColossusError::OtherKind(
-                "its hit points, wounds or distances to walls are negative or no numbers",
-            ));
-        }
-        if !self.damage.fits_plates(kind) {
-            return Err(ColossusError::OtherKind("it has other plates"));
-        }
-        Ok(())
-    }
-
-    /// Refuses a state with an errand or an act that the kind does not have.
-    fn check_acts(&self, kind: &CreatureKind) -> Result<(), ColossusError> {
-        if self.acting.errand().is_some() && kind.gait().is_none() {
-            return Err(ColossusError::OtherKind("it was sent, and cannot walk"));
-        }
-        if !self.ranged.fits(kind) {
-            return Err(ColossusError::OtherKind(
-                "what its attacks have let out is not its brain's",
-            ));
-        }
-        let states = kind.brain().len();
-        if !self.acting.fits(states) || !self.clips.fits(states) || !self.striking.fits(states) {
-            return Err(ColossusError::OtherKind(
-                "its act is not one of the brain's",
-            ));
-        }
-        Ok(())
+        let states = brain.len();
+        let fault = if !self.brain.fits(brain) || !self.senses.fits(regions, own) {
+            "its brain has other states"
+        } else if self.feet.len() != kind.legs().len() {
+            "it has another number of legs"
+        } else if self.pose.transforms.len() != kind.skeleton().joints().len() {
+            "it has another number of joints"
+        } else if self.hit_points().len() != kind.weak_points().len() {
+            "it has another number of weak points"
+        } else if !self.damage.is_valid() || !self.perceived.has_valid_walls() {
+            "its hit points, wounds or distances to walls are negative or no numbers"
+        } else if !self.damage.fits_plates(kind) {
+            "it has other plates"
+        } else if self.acting.errand().is_some() && kind.gait().is_none() {
+            "it was sent, and cannot walk"
+        } else if !self.ranged.fits(kind) {
+            "what its attacks have let out is not its brain's"
+        } else if !self.acting.fits(states)
+            || !self.clips.fits(states)
+            || !self.striking.fits(states)
+        {
+            "its act is not one of the brain's"
+        } else if !self.is_within_range() {
+            "its place or its motion is no number that a creature reaches"
+        } else if self.animator().fade_bound() > FARTHEST_COORDINATE {
+            "what is left of its last clip is no number that a pose has"
+        } else {
+            return self.check_pose(kind);
+        };
+        Err(ColossusError::OtherKind(fault))
     }
 
     /// True if all places and motions are numbers that a creature reaches.
@@ -310,11 +286,6 @@ impl CreatureState {
 
     /// Refuses a state whose clips cannot pose the creature, or cannot go on.
     fn check_pose(&self, kind: &CreatureKind) -> Result<(), ColossusError> {
-        if self.animator().fade_bound() > FARTHEST_COORDINATE {
-            return Err(ColossusError::OtherKind(
-                "what is left of its last clip is no number that a pose has",
-            ));
-        }
         let mut pose = Pose::default();
         let mut buffers = PoseBuffers::default();
         self.animator()

@@ -3,7 +3,6 @@
 use clamber_animation::Spring;
 use clamber_animation::rig::JointId;
 use clamber_surface::geometry::{Similarity, WorldCapsule};
-use clamber_surface::mesh::TriangleId;
 use clamber_surface::surface::TargetMotion;
 use clamber_world::{Contact, MaterialPoint, Obstacle, SweepContact};
 use glam::{DQuat, DVec3};
@@ -214,16 +213,14 @@ impl Creature {
     }
 
     /// The joint that moves a point of the skin.
-    fn joint_at(&self, material: &MaterialPoint) -> Option<JointId> {
-        let triangle = u32::try_from(material.key).ok().map(TriangleId)?;
-        self.surface.mesh().joint_of(triangle)
+    pub(super) fn joint_at(&self, material: &MaterialPoint) -> Option<JointId> {
+        self.surface.mesh().joint_of(material.triangle()?)
     }
 
     /// First contact of the limb's skin with a body in this tick.
     fn touch(&self, strike: &Strike, body: &WorldCapsule) -> Option<SweepContact> {
         let (center, radius) = self.surface.bounding_ball()?;
-        let middle = 0.5 * (body.ends[0] + body.ends[1]);
-        let size = body.radius + 0.5 * body.ends[0].distance(body.ends[1]);
+        let (middle, size) = body.bounding_ball();
         if middle.distance(center) > radius + size {
             return None;
         }

@@ -4,7 +4,7 @@ use clamber_animation::ClipId;
 use clamber_animation::rig::{Playback, WeakPoint};
 
 use super::{Contacts, Gait, JointBall, Leg, Names, Strike};
-use crate::brain::{Attack, Brain, BrainProblem, StateAction, StateId, list};
+use crate::brain::{Attack, Brain, BrainProblem, StateAction, StateId};
 use crate::error::ColossusError;
 
 /// The clip of a state's act, and its strike.
@@ -44,12 +44,8 @@ fn compile(
     let here = |problem| brain.error_in(state, problem);
     for name in brain.exposes(state) {
         if !weak_points.iter().any(|point| point.name == *name) {
-            return Err(here(BrainProblem::Unknown {
-                what: "weak point",
-                name: name.clone(),
-                known: list(weak_points.iter().map(|point| &point.name)),
-            })
-            .into());
+            let known = weak_points.iter().map(|point| &point.name);
+            return Err(here(BrainProblem::unknown("weak point", name, known)).into());
         }
     }
     let Some(act) = brain.act(state) else {

@@ -10,19 +10,16 @@ use clamber_animation::rig::{
 use clamber_surface::mesh::{ColliderMesh, SurfaceKind, SurfaceTag, TriangleId};
 use glam::{DVec3, Quat, Vec3};
 
+use super::Names;
 use super::file::{BodyFile, FurFile, WeakPointFile};
-use super::{Names, whole};
-use crate::brain::{BrainError, BrainProblem, list};
+use crate::brain::{BrainError, BrainProblem, check, whole};
 
 /// Adds the brain file's markers to the clips, and extends clips that have a `close` there.
 pub(crate) fn changed(clips: Vec<Clip>, body: &BodyFile) -> Result<Vec<Clip>, BrainError> {
     for name in body.clips.keys() {
         if !clips.iter().any(|clip| clip.name == *name) {
-            return Err(whole(BrainProblem::Unknown {
-                what: "clip",
-                name: name.clone(),
-                known: list(clips.iter().map(|clip| &clip.name)),
-            }));
+            let known = clips.iter().map(|clip| &clip.name);
+            return Err(whole(BrainProblem::unknown("clip", name, known)));
         }
     }
     let mut seen = BTreeSet::new();
@@ -49,14 +46,8 @@ pub(crate) fn changed(clips: Vec<Clip>, body: &BodyFile) -> Result<Vec<Clip>, Br
         let Some(seconds) = file.close else {
             return Ok(marked);
         };
-        if !(seconds > 0.0 && seconds <= LONGEST_CLOSE) {
-            let (what, range) = ("close", "more than 0 and at most 10 s");
-            return Err(whole(BrainProblem::OutOfRange {
-                what,
-                range,
-                found: seconds,
-            }));
-        }
+        let is_within = seconds > 0.0 && seconds <= LONGEST_CLOSE;
+        check(is_within, "close", "more than 0 and at most 10 s", seconds).map_err(whole)?;
         closed(&marked, seconds).map_err(in_words)
     });
     marked.collect()
@@ -98,8 +89,12 @@ fn closed(clip: &Clip, seconds: f64) -> Result<Clip, RigError> {
         };
         Channel::new(channel.joint(), interpolation, times, values)
     });
-    let channels: Result<Vec<Channel>, RigError> = channels.collect();
-    Clip::new(clip.name.clone(), channels?)
+    with_channels(clip, channels.collect::<Result<_, _>>()?)
+}
+
+/// The clip with other channels.
+pub(super) fn with_channels(clip: &Clip, channels: Vec<Channel>) -> Result<Clip, RigError> {
+    Clip::new(clip.name.clone(), channels)
         .with_markers(clip.markers().to_vec())?
         .with_ground_speed(clip.ground_speed())
 }
@@ -140,11 +135,8 @@ pub(crate) fn furred(
     let mut all: BTreeSet<TriangleId> = BTreeSet::new();
     for name in &fur.materials {
         let Some(triangles) = materials.get(name) else {
-            return Err(whole(BrainProblem::Unknown {
-                what: "material",
-                name: name.clone(),
-                known: list(materials.keys()),
-            }));
+            let known = materials.keys();
+            return Err(whole(BrainProblem::unknown("material", name, known)));
         };
         all.extend(triangles);
     }
@@ -176,11 +168,7 @@ pub(crate) fn weak_point(
     height: f64,
 ) -> Result<WeakPoint, BrainError> {
     let range = |what, range, found: f64, least: f64, most: f64| {
-        if (least..=most).contains(&found) {
-            Ok(())
-        } else {
-            Err(whole(BrainProblem::OutOfRange { what, range, found }))
-        }
+        check((least..=most).contains(&found), what, range, found).map_err(whole)
     };
     range("radius", "from 0 to 10 heights", file.radius, 0.0, 10.0)?;
     let (least, most) = (f64::MIN_POSITIVE, f64::MAX);

@@ -95,9 +95,7 @@ impl Extent {
         }
         Ok(Self { bands })
     }
-}
 
-impl Extent {
     /// The union of both rooms.
     pub(crate) fn and(&self, other: &Self) -> Self {
         let bands = core::array::from_fn(|index| self.bands[index].and(other.bands[index]));
@@ -119,9 +117,7 @@ impl Extent {
             bands: [band; BAND_COUNT],
         }
     }
-}
 
-impl Extent {
     /// The room for turning to any heading: per band a square whose half side is the distance of the furthest corner.
     pub(crate) fn stout(&self) -> Self {
         let bands = self.bands.map(|band| {

@@ -3,6 +3,7 @@
 use clamber_animation::rig::{Channel, Clip, Joint, Keyframes, RigError, Skeleton};
 use glam::DQuat;
 
+use super::additions::with_channels;
 use super::file::Facing;
 
 /// The skeleton and the clips, turned to look along +Z: the root joints are turned about Y, at rest and in all clips.
@@ -27,8 +28,7 @@ pub(crate) fn turned(
     }
     let clip = |clip: &Clip| -> Result<Clip, RigError> {
         let channels = clip.channels().iter().map(|channel| {
-            let is_root = roots.get(channel.joint().index()) == Some(&true);
-            if !is_root {
+            if roots.get(channel.joint().index()) != Some(&true) {
                 return Ok(channel.clone());
             }
             let mut values = channel.values().clone();
@@ -49,10 +49,7 @@ pub(crate) fn turned(
             let times = channel.times().to_vec();
             Channel::new(channel.joint(), channel.interpolation(), times, values)
         });
-        let channels: Result<Vec<Channel>, RigError> = channels.collect();
-        Clip::new(clip.name.clone(), channels?)
-            .with_markers(clip.markers().to_vec())?
-            .with_ground_speed(clip.ground_speed())
+        with_channels(clip, channels.collect::<Result<_, _>>()?)
     };
     let clips: Result<Vec<Clip>, RigError> = clips.iter().map(clip).collect();
     Ok((Skeleton::new(joints)?, clips?))

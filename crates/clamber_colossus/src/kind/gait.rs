@@ -3,8 +3,8 @@ use clamber_animation::rig::{Clip, Playback};
 use glam::DVec3;
 
 use super::file::GaitFile;
-use super::{Contacts, Leg, Names, whole};
-use crate::brain::BrainProblem;
+use super::{Contacts, Leg, Names};
+use crate::brain::{check, whole};
 use crate::error::ColossusError;
 
 /// Below this speed of the feet, in heights a second, the direction of the walk is unknown.
@@ -49,10 +49,8 @@ impl Gait {
             None => None,
         };
         for (what, found) in [("turn_deg", file.turn_deg), ("steer_deg", file.steer_deg)] {
-            if !(found > 0.0 && found <= 360.0) {
-                let range = "more than 0 and at most 360 degrees a second";
-                return Err(whole(BrainProblem::OutOfRange { what, range, found }).into());
-            }
+            let range = "more than 0 and at most 360 degrees a second";
+            check(found > 0.0 && found <= 360.0, what, range, found).map_err(whole)?;
         }
         let clip = names.clips.clip(walk)?;
         let told = file.speed.map(|speed| speed * height);
@@ -60,18 +58,9 @@ impl Gait {
         let ground = ground(names, clip, legs)?;
         let measured = ground.map_or(0.0, |ground| -ground.z);
         let speed = told.unwrap_or(measured);
-        if !(speed > 0.0 && speed.is_finite()) {
-            let (what, range) = (
-                "speed",
-                "more than 0 and finite: no foot stands and moves back in the clip, so give it here, in heights a second",
-            );
-            return Err(whole(BrainProblem::OutOfRange {
-                what,
-                range,
-                found: speed,
-            })
-            .into());
-        }
+        let range = "more than 0 and finite: no foot stands and moves back in the clip, so give it here, \
+            in heights a second";
+        check(speed > 0.0 && speed.is_finite(), "speed", range, speed).map_err(whole)?;
         let turn_rate = file.turn_deg.to_radians();
         let contacts = |clip: ClipId, ground: [f64; 2]| -> Result<Vec<Contacts>, ColossusError> {
             let clip = names.clips.clip(clip)?;
@@ -102,9 +91,7 @@ impl Gait {
             turn_contacts,
         })
     }
-}
 
-impl Gait {
     /// All clips that are played on the spot: all but the walk.
     pub(crate) fn on_spot(&self) -> impl Iterator<Item = ClipId> {
         let turns = self.turn.into_iter().flatten();

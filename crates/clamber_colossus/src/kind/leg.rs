@@ -6,7 +6,8 @@ use glam::{DAffine3, DQuat, DVec3};
 use super::file::LegFile;
 use super::limb::Limb;
 use super::sole::SoleShape;
-use super::{Names, RestSkin, whole};
+use super::{Names, RestSkin};
+use crate::brain::whole;
 use crate::error::ColossusError;
 
 /// Height above its lowest point in a clip up to which a foot may stand, as a share of the leg's length.
@@ -63,11 +64,8 @@ impl Leg {
         skin: &RestSkin,
         file: &LegFile,
     ) -> Result<Self, ColossusError> {
-        let toe = file
-            .toe
-            .as_ref()
-            .map(|name| names.joint(name).map_err(whole))
-            .transpose()?;
+        let toe = file.toe.as_ref().map(|name| names.joint(name));
+        let toe = toe.transpose().map_err(whole)?;
         let limb = Limb::new(names, file, toe)?;
         let ankle = limb.foot;
         let ball = toe.unwrap_or(ankle);

@@ -5,9 +5,9 @@ use clamber_animation::joint_in_model;
 use clamber_animation::rig::{JointId, Pose, Skeleton};
 use glam::{DAffine3, DVec3, Vec3};
 
+use super::Names;
 use super::file::{Knee, LegFile};
-use super::{Names, whole};
-use crate::brain::BrainProblem;
+use crate::brain::{check, whole};
 use crate::error::ColossusError;
 
 /// Smallest angle between the two bones of a leg, radians: 20 degrees, a deep squat.
@@ -49,11 +49,8 @@ impl Limb {
         file: &LegFile,
         toe: Option<JointId>,
     ) -> Result<Self, ColossusError> {
-        if !(2..=5).contains(&file.joints.len()) {
-            let (what, range) = ("joints", "from 2 to 5 joints of a leg");
-            let found = file.joints.len() as f64;
-            return Err(whole(BrainProblem::OutOfRange { what, range, found }).into());
-        }
+        let (count, range) = (file.joints.len(), "from 2 to 5 joints of a leg");
+        check((2..=5).contains(&count), "joints", range, count as f64).map_err(whole)?;
         let mut joints = Vec::with_capacity(file.joints.len());
         for name in &file.joints {
             joints.push(names.joint(name).map_err(whole)?);

@@ -41,7 +41,7 @@ pub use plate::Plate;
 pub(crate) use sole::SoleShape;
 pub(crate) use strikes::{Strike, Swept};
 
-use crate::brain::{Brain, BrainError, BrainProblem, BrainReport, StateId};
+use crate::brain::{Brain, BrainError, BrainProblem, BrainReport, StateId, check, whole};
 use crate::error::ColossusError;
 
 /// Gravity, metres a second squared. The speed up to which a foot counts as standing depends on it.
@@ -349,27 +349,20 @@ impl CreatureKind {
     }
 }
 
-/// An error of the whole brain, without a state and a line.
-pub(crate) fn whole(problem: BrainProblem) -> BrainError {
-    BrainError {
-        line: None,
-        state: None,
-        problem: Box::new(problem),
-    }
-}
-
 /// Refuses a tremor or heights out of range, and heights for a skin without height.
 fn check_body(body: &BodyFile, height: f64) -> Result<(), BrainError> {
-    if !(0.0..=20.0).contains(&body.tremor) {
-        let (what, range, found) = ("tremor", "from 0 to 20", body.tremor);
-        return Err(whole(BrainProblem::OutOfRange { what, range, found }));
-    }
+    let tremor = body.tremor;
+    check(
+        (0.0..=20.0).contains(&tremor),
+        "tremor",
+        "from 0 to 20",
+        tremor,
+    )
+    .map_err(whole)?;
     for (what, found) in [("height", body.height), ("made_for", body.made_for)] {
         let Some(found) = found else { continue };
-        let range = "from 0.001 to 100,000 m";
-        if !(1e-3..=1e5).contains(&found) {
-            return Err(whole(BrainProblem::OutOfRange { what, range, found }));
-        }
+        let is_within = (1e-3..=1e5).contains(&found);
+        check(is_within, what, "from 0.001 to 100,000 m", found).map_err(whole)?;
         if height <= 0.0 {
             return Err(whole(BrainProblem::NoHeight { what }));
         }

@@ -4,8 +4,7 @@ use clamber_animation::ik::IkError;
 use clamber_animation::rig::{JointId, Skeleton};
 use clamber_animation::{AnimationSet, ClipId};
 
-use super::whole;
-use crate::brain::{BrainError, BrainProblem, list};
+use crate::brain::{BrainError, BrainProblem, whole};
 
 /// Looks names up. Errors list the known names.
 pub(crate) struct Names<'a> {
@@ -65,11 +64,9 @@ impl Names<'_> {
     }
 
     pub(crate) fn clip(&self, name: &str) -> Result<ClipId, BrainProblem> {
-        self.clips.find(name).ok_or_else(|| BrainProblem::Unknown {
-            what: "clip",
-            name: name.to_owned(),
-            known: list(self.clips.clips().iter().map(|clip| &clip.name)),
-        })
+        let known = self.clips.clips().iter().map(|clip| &clip.name);
+        let found = self.clips.find(name);
+        found.ok_or_else(|| BrainProblem::unknown("clip", name, known))
     }
 
     pub(crate) fn joint(&self, name: &str) -> Result<JointId, BrainProblem> {
@@ -98,10 +95,7 @@ impl Names<'_> {
     }
 
     fn no_joint(&self, name: &str) -> BrainProblem {
-        BrainProblem::Unknown {
-            what: "joint",
-            name: name.to_owned(),
-            known: list(self.skeleton.joints().iter().map(|joint| &joint.name)),
-        }
+        let known = self.skeleton.joints().iter().map(|joint| &joint.name);
+        BrainProblem::unknown("joint", name, known)
     }
 }

@@ -1,7 +1,7 @@
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 
-use super::{PlateFile, whole};
-use crate::brain::{BrainError, BrainProblem, list};
+use super::PlateFile;
+use crate::brain::{BrainError, BrainProblem, check, whole};
 
 /// A piece of armour of a kind of creature.
 #[derive(Clone, Debug)]
@@ -18,14 +18,10 @@ pub struct Plate {
 
 impl Plate {
     pub(crate) fn new(file: &PlateFile, mesh: &ColliderMesh) -> Result<Self, BrainError> {
-        if !(file.stagger > 0.0 && file.stagger.is_finite()) {
-            let (what, range, found) = ("stagger", "finite and more than 0", file.stagger);
-            return Err(whole(BrainProblem::OutOfRange { what, range, found }));
-        }
-        if file.count == 0 {
-            let (what, range, found) = ("count", "at least 1", 0.0);
-            return Err(whole(BrainProblem::OutOfRange { what, range, found }));
-        }
+        let (stagger, range) = (file.stagger, "finite and more than 0");
+        let is_within = stagger > 0.0 && stagger.is_finite();
+        check(is_within, "stagger", range, stagger).map_err(whole)?;
+        check(file.count > 0, "count", "at least 1", 0.0).map_err(whole)?;
         let users = mesh.tags().iter().map(|tag| tag.user);
         let all = users.clone().enumerate();
         let ours = all.filter(|(_, user)| file.user > 0 && *user == file.user);
@@ -34,11 +30,9 @@ impl Plate {
             let mut known: Vec<u32> = users.filter(|user| *user > 0).collect();
             known.sort_unstable();
             known.dedup();
-            return Err(whole(BrainProblem::Unknown {
-                what: "triangle with the user number",
-                name: file.user.to_string(),
-                known: list(known.iter().map(ToString::to_string)),
-            }));
+            let (what, name) = ("triangle with the user number", file.user.to_string());
+            let known = known.iter().map(ToString::to_string);
+            return Err(whole(BrainProblem::unknown(what, &name, known)));
         }
         Ok(Self {
             name: file.name.clone(),

@@ -3,9 +3,9 @@
 use serde_json::{Map, Value, json};
 
 use super::{PROPOSED_AIM, PROPOSED_WITHIN, Proposal, Strikes};
-use crate::brain::{BrainFile, BrainProblem};
+use crate::brain::{BrainFile, BrainProblem, whole};
 use crate::error::ColossusError;
-use crate::kind::{HUMAN_HEIGHT, whole};
+use crate::kind::HUMAN_HEIGHT;
 
 /// The brain file with the proposed body and states.
 pub(super) fn file(

@@ -1,21 +1,16 @@
 //! Feet of third-party animals: two, four and eight legs, of three and four joints, with feet below the leg or beside
 //! it.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::support;
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::support::TICK;
+use crate::support::{TICK, level_ground, noise, test_rig, with_noises};
 use clamber_animation::rig::{
     Channel, Clip, Interpolation, JointId, Keyframes, Playback, Skeleton,
 };
-use clamber_colossus::{Brain, Creature, CreatureConfig, CreatureKind, Noise, Surroundings};
-use clamber_gltf::load;
+use clamber_colossus::{Brain, Creature, CreatureConfig, CreatureKind};
 use clamber_surface::mesh::VertexId;
-use clamber_world::{HalfSpace, Obstacle};
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
@@ -172,15 +167,7 @@ fn kind_with(
     height: f64,
     change: impl Fn(Vec<Clip>, &Skeleton) -> Vec<Clip>,
 ) -> Option<Arc<CreatureKind>> {
-    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
-        eprintln!(
-            "SKIPPED animals: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb"
-        );
-        return None;
-    };
-    let mut rig = load(PathBuf::from(root).join("models").join(animal.file))
-        .unwrap()
-        .rig;
+    let mut rig = test_rig(animal.file)?;
     let mut brain = json!({
         "body": {
             "height": height,
@@ -247,8 +234,7 @@ struct Figures {
 
 fn live(kind: &Arc<CreatureKind>, height: f64) -> Figures {
     let mut creature = Creature::new(Arc::clone(kind), CreatureConfig::default()).unwrap();
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     let legs = kind.brain().file().body.legs.len();
     let feet: Vec<Vec<VertexId>> = (0..legs).map(|leg| foot(kind, leg)).collect();
     let mut figures = Figures::default();
@@ -264,16 +250,9 @@ fn live(kind: &Arc<CreatureKind>, height: f64) -> Figures {
         let turn = (f64::from(tick) * TICK / lap) as u32;
         let angle = f64::from(turn) * 2.4;
         let place = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * (3.0 * height);
-        let noises = [Noise {
-            place,
-            loudness: 5.0,
-        }];
+        let noises = [noise(place)];
         let rings = (f64::from(tick) * TICK).rem_euclid(lap) > 3.0 * slow;
-        let around = Surroundings {
-            terrain: &terrain,
-            noises: &noises[..usize::from(rings)],
-            ..Surroundings::default()
-        };
+        let around = with_noises(&terrain, &noises[..usize::from(rings)]);
         let from = creature.state().position();
         creature.step(&around).unwrap();
         figures.walked += creature.state().position().distance(from) / height;
@@ -452,13 +431,10 @@ fn legs_that_cannot_be_are_refused_by_name() {
         let error = leg(joints);
         assert!(error.contains(text), "{joints:?}: {error}");
     }
-    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
+    // A pole target is a helper joint: no skin moves with it.
+    let Some(mut rig) = test_rig("Stag.glb") else {
         return;
     };
-    // A pole target is a helper joint: no skin moves with it.
-    let mut rig = load(PathBuf::from(root).join("models/Stag.glb"))
-        .unwrap()
-        .rig;
     let joints = ["BackLeg.L", "BackUpperLeg.L", "PoleTarget.L"];
     let brain = json!({
         "body": { "legs": [{ "joints": joints }] }, "start": "rests", "states": { "rests": {} }

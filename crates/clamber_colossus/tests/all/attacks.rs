@@ -1,15 +1,16 @@
 //! The giant's attacks leave time to run away, strike by touch, and strike only in their window. Scenes B39 and B40.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::ranged::{attack as ranged_attack, places, somebody, wall};
-use crate::support::{TICK, all_cases, brain_file, brain_with, creature, kind, kind_at, person};
+use crate::support::{
+    TICK, add_block, all_cases, brain_file, brain_with, creature, kind, kind_at, level_ground,
+    person, terrain_of, with_people,
+};
 use clamber_animation::rig::Playback;
 use clamber_animation::{joint_in_model, rig::JointId};
 use clamber_colossus::brain::StateAction;
-use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Surroundings};
-use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
-use clamber_world::{BodyPoses, HalfSpace, Obstacle, RapierTerrain};
+use clamber_colossus::{Creature, CreatureConfig, CreatureEvent};
+use clamber_world::rapier3d::prelude::PhysicsWorld;
+use clamber_world::{HalfSpace, Obstacle};
 use glam::DVec3;
 
 /// The attack states of the giant's own brain, each with its act as JSON.
@@ -57,8 +58,7 @@ struct Outcome {
 /// Runs an attack on a person at a place. If `flees`, the person runs away at 3 m/s from 0.3 s on.
 fn attack(before: &Creature, at: DVec3, flees: bool) -> Outcome {
     let mut giant = before.clone();
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     let mut victim = person(at);
     let away = (at - giant.state().position()).with_y(0.0).normalize();
     let mut outcome = Outcome {
@@ -89,12 +89,7 @@ fn attack(before: &Creature, at: DVec3, flees: bool) -> Outcome {
         let from = giant.palette().clone();
         let world_before = *giant.surface().world_from_model();
         let people = [victim];
-        let around = Surroundings {
-            terrain: &terrain,
-            people: &people,
-            ..Surroundings::default()
-        };
-        let report = giant.step(&around).unwrap().clone();
+        let report = giant.step(&with_people(&terrain, &people)).unwrap().clone();
         for event in &report.events {
             if let CreatureEvent::Entered { to, .. } = event {
                 match giant.kind().brain().path(*to) {
@@ -250,8 +245,7 @@ fn a_stomp_stands_where_it_came_down() {
         .find(|(name, _)| name == "stomp_right")
         .unwrap();
     let before = before(&act);
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     let mut furthest = 0f64;
     for (distance, degrees) in [2.0, 6.0, 9.0, 12.0, 20.0]
         .into_iter()
@@ -263,12 +257,7 @@ fn a_stomp_stands_where_it_came_down() {
         let people = [person(at)];
         let (mut down, mut stood) = (None, 0);
         for tick in 0..400 {
-            let around = Surroundings {
-                terrain: &terrain,
-                people: &people,
-                ..Surroundings::default()
-            };
-            let report = giant.step(&around).unwrap();
+            let report = giant.step(&with_people(&terrain, &people)).unwrap();
             let landed = report.events.iter().find_map(|event| match event {
                 CreatureEvent::Plant { leg: 1, place } => Some(*place),
                 _ => None,
@@ -298,8 +287,7 @@ fn a_stomp_stands_where_it_came_down() {
 /// An attack that is left for another act strikes nobody any more, even while the pose of its clip remains.
 #[test]
 fn an_attack_ends_with_its_act() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     for (name, act) in attacks() {
         for next in [r#""act": "sleep""#, r#""final": true"#] {
             let states = format!(
@@ -326,12 +314,7 @@ fn an_attack_ends_with_its_act() {
                     }
                 };
                 let people: Vec<_> = (0..169).map(place).collect();
-                let around = Surroundings {
-                    terrain: &terrain,
-                    people: &people,
-                    ..Surroundings::default()
-                };
-                let report = giant.step(&around).unwrap();
+                let report = giant.step(&with_people(&terrain, &people)).unwrap();
                 let dealt = report.blows.len();
                 if giant.state().current() == ends {
                     left += 1;
@@ -352,14 +335,9 @@ fn nobody_is_struck_through_a_gate_that_closes() {
     let ground = HalfSpace::below(0.0);
     // Solid ground does not block a foot whose joints are inside of it.
     let mut world = PhysicsWorld::default();
-    let pose = Pose::translation(0.0, -1.0, 0.0);
-    world.insert_collider(
-        ColliderBuilder::cuboid(200.0, 1.0, 200.0).position(pose),
-        None,
-    );
-    world.detect_collisions(&(), &());
-    let poses = BodyPoses::default();
-    let slab = RapierTerrain::of_world(&world, &poses);
+    let half = DVec3::new(200.0, 1.0, 200.0);
+    add_block(&mut world, DVec3::NEG_Y, half);
+    let slab = terrain_of(&world);
     let (mut open, mut behind, mut low) = (0, 0, 0);
     for (name, act) in attacks() {
         let giant = before(&act);

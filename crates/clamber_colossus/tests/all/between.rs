@@ -1,18 +1,16 @@
 //! Transitions from one act to another: nothing of the old act may go on in the new one.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use clamber_animation::rig::Palette;
-use clamber_colossus::{
-    Creature, CreatureConfig, CreatureEvent, Foresight, Riding, Sense, Surroundings,
-};
+use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Foresight, Sense};
 use clamber_surface::mesh::TriangleId;
-use clamber_world::{HalfSpace, MaterialPoint, Obstacle};
+use clamber_world::{HalfSpace, Obstacle};
 use glam::DVec3;
 use serde_json::Value;
 
 use crate::support::life::{Life, SETTINGS, Setting, at};
-use crate::support::{TICK, brain_with, creature, kind};
+use crate::support::{
+    TICK, brain_with, creature, kind, level_ground, on_terrain, rider, terrain_of,
+};
 
 /// The states that the tests enter, as JSON.
 const STATES: &str = r#"{
@@ -39,14 +37,9 @@ fn giant() -> Creature {
 
 /// Lets some seconds pass on level ground.
 fn live(one: &mut Creature, seconds: f64) {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     for _ in 0..(seconds / TICK).round() as u32 {
-        let around = Surroundings {
-            terrain: &terrain,
-            ..Surroundings::default()
-        };
-        one.step(&around).unwrap();
+        one.step(&on_terrain(&terrain)).unwrap();
     }
 }
 
@@ -210,10 +203,7 @@ fn another_person_is_seen_at_once() {
                 life.tick(&[near, far]);
             }
             let mut rides = near;
-            rides.riding = Some(Riding {
-                at: MaterialPoint::on_triangle(TriangleId(0), [1.0 / 3.0; 3]),
-                hangs: false,
-            });
+            rides.riding = rider(DVec3::ZERO, TriangleId(0)).riding;
             for _ in 0..6 {
                 life.tick(&[rides, far]);
                 let seen = life.one.state().senses().get(Sense::PreySeen);
@@ -272,14 +262,10 @@ fn what_the_new_brain_does_not_play_ends() {
 /// An errand does not restart when states are entered during it.
 #[test]
 fn an_errand_that_is_blocked_is_told_whatever_is_entered() {
-    let poses = clamber_world::BodyPoses::default();
     let world = crate::undecided::pen(1.0);
-    let terrain = clamber_world::RapierTerrain::of_world(&world, &poses);
+    let terrain = terrain_of(&world);
     let terrain: [&dyn Obstacle; 1] = [&terrain];
-    let around = Surroundings {
-        terrain: &terrain,
-        ..Surroundings::default()
-    };
+    let around = on_terrain(&terrain);
     let mut one = giant();
     assert!(one.send(Some(DVec3::new(-60.0, 0.0, 6.0))));
     let mut stopped = 0;
@@ -327,13 +313,8 @@ fn no_damage_is_no_hurt() {
     let mut one = giant();
     live(&mut one, 0.1);
     assert_eq!(one.harm(0, 0.0), Some(0.0));
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
-    let around = Surroundings {
-        terrain: &terrain,
-        ..Surroundings::default()
-    };
-    let report = one.step(&around).unwrap();
+    let terrain = level_ground();
+    let report = one.step(&on_terrain(&terrain)).unwrap();
     let is_hurt = |event: &CreatureEvent| matches!(event, CreatureEvent::Hurt { .. });
     assert!(!report.events.iter().any(is_hurt));
 }

@@ -1,10 +1,8 @@
 //! Moving ground, such as ships that turn and lifts that rise, carries the creatures that stand and walk on it.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::sync::Arc;
 
-use clamber_colossus::{Creature, CreatureKind, Noise, Surroundings};
+use clamber_colossus::{Creature, CreatureKind};
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::rig::Palette;
@@ -14,7 +12,8 @@ use clamber_world::{
 };
 use glam::{DVec3, Vec3};
 
-use crate::support::TICK;
+use crate::support::life::motion;
+use crate::support::{TICK, noise, on_terrain, with_noises};
 use crate::walls::{config, creatures};
 
 /// An endless level deck with an exact motion. It turns about the vertical axis only.
@@ -64,13 +63,7 @@ impl Obstacle for Deck {
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
-        let local = DVec3::from_array(point.coordinates);
-        let [before, now] = [self.before, self.now].map(|at| at.transform_point(local));
-        Some(PointMotion {
-            turn: self.now.rotation * self.before.rotation.conjugate(),
-            frame: Some(self.now.rotation),
-            ..PointMotion::translated(before, now, dt)
-        })
+        Some(motion([self.before, self.now], point, dt))
     }
 }
 
@@ -105,19 +98,13 @@ fn live(kind: &Arc<CreatureKind>, moves: &dyn Fn(f64) -> Similarity) -> Life {
         let at = moves(time);
         (deck.before, deck.now) = (deck.now, at);
         let angle = (time / lap).floor() * 2.4;
-        let noise = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * (3.0 * height);
-        let noises = [Noise {
-            place: at.transform_point(noise),
-            loudness: 5.0,
-        }];
+        let place = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * (3.0 * height);
+        let noises = [noise(at.transform_point(place))];
         let rings = time.rem_euclid(lap) > 2.0 * height.sqrt();
         let terrain: [&dyn Obstacle; 1] = [&deck];
-        let around = Surroundings {
-            terrain: &terrain,
-            noises: &noises[..usize::from(rings)],
-            ..Surroundings::default()
-        };
-        creature.step(&around).unwrap();
+        creature
+            .step(&with_noises(&terrain, &noises[..usize::from(rings)]))
+            .unwrap();
         life.states.push(creature.state().current().index());
         life.places
             .push(at.inverse_transform_point(creature.state().position()));
@@ -200,11 +187,7 @@ fn what_moves_between_its_feet_does_not_carry_it() {
         };
         plate.advance(&still, at).unwrap();
         let terrain: [&dyn Obstacle; 2] = [&ground, &plate];
-        let around = Surroundings {
-            terrain: &terrain,
-            ..Surroundings::default()
-        };
-        creature.step(&around).unwrap();
+        creature.step(&on_terrain(&terrain)).unwrap();
         moved = moved.max(creature.state().position().with_y(0.0).length());
         turned = turned.max(creature.state().yaw().abs());
     }

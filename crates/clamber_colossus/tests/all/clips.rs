@@ -1,7 +1,5 @@
 //! The giant's clips: the shakes that riders feel, and the starts of limbs. Scenes B42, B43 and B46.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::support::{Feel, TICK, brain_file, kind};
 use clamber_animation::rig::{Clip, JointId, Playback, WeakPoint};
 use clamber_climber::{Climber, ClimberConfig, ClimberInput};

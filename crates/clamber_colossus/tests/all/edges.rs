@@ -1,14 +1,12 @@
 //! Steps, cliffs and gullies in the ground, slopes that are too steep, and other creatures in the way.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::sync::Arc;
 
-use clamber_colossus::{Creature, CreatureConfig, CreatureKind, Noise, Sense, Surroundings};
+use clamber_colossus::{Creature, CreatureConfig, CreatureKind, Sense, Surroundings};
 use clamber_world::{Obstacle, TriangleTerrain};
 use glam::{DVec3, Vec3};
 
-use crate::support::TICK;
+use crate::support::{TICK, level_ground, noise, with_noises};
 use crate::walls::{config, creatures, reach};
 
 /// Ground of strips across the path. Each pair is a distance along +Z and the height of the ground there, metres.
@@ -52,16 +50,10 @@ fn walk(kind: &Arc<CreatureKind>, height: f64, terrain: &[&dyn Obstacle], goal: 
     let settled = (0.6 * pace / TICK) as u32;
     let mut walk = Walk::default();
     for _ in 0..((10.0 + 3.0 * goal / height) * pace / TICK) as u32 {
-        let noises = [Noise {
-            place: DVec3::Z * goal,
-            loudness: 5.0,
-        }];
-        let around = Surroundings {
-            terrain,
-            noises: &noises[..usize::from(!walk.arrived)],
-            ..Surroundings::default()
-        };
-        creature.step(&around).unwrap();
+        let noises = [noise(DVec3::Z * goal)];
+        creature
+            .step(&with_noises(terrain, &noises[..usize::from(!walk.arrived)]))
+            .unwrap();
         let state = creature.state();
         let is_blocked = state.senses().get(Sense::Blocked) > 0.0;
         walk.blocked |= is_blocked;
@@ -82,47 +74,36 @@ fn walk(kind: &Arc<CreatureKind>, height: f64, terrain: &[&dyn Obstacle], goal: 
     walk
 }
 
-/// A kind of ground: its name, its profile, and true if a creature walks on over its edge.
-type Ground = (&'static str, fn(f64, f64) -> Vec<[f64; 2]>, bool);
+/// A profile of ground. Its lengths are shares of the creature's height.
+#[derive(Clone, Copy)]
+enum Profile {
+    /// A vertical face that rises by this share.
+    Step(f64),
+    /// A gully of this width and depth.
+    Gully(f64, f64),
+    /// A slope that rises by this share, at an angle in degrees.
+    Slope(f64, f64),
+}
 
-/// The kinds of ground. A profile depends on the distance to the edge and on the creature's height, metres.
+use Profile::{Gully, Slope, Step};
+
+/// A kind of ground: its name, its profile, and true if a creature walks on over its edge.
+type Ground = (&'static str, Profile, bool);
+
+/// The kinds of ground.
 const GROUNDS: [Ground; 12] = [
-    ("step of 0.02", |away, tall| step(away, 0.02 * tall), true),
-    ("drop of 0.02", |away, tall| step(away, -0.02 * tall), true),
-    ("step of 0.12", |away, tall| step(away, 0.12 * tall), false),
-    ("step of 0.29", |away, tall| step(away, 0.29 * tall), false),
-    (
-        "cliff of 0.12",
-        |away, tall| step(away, -0.12 * tall),
-        false,
-    ),
-    ("cliff of 0.4", |away, tall| step(away, -0.4 * tall), false),
-    ("cliff of 3", |away, tall| step(away, -3.0 * tall), false),
-    (
-        "gully, 0.5 wide and 0.3 deep",
-        |away, tall| gully(away, 0.5 * tall, 0.3 * tall),
-        false,
-    ),
-    (
-        "gully, 0.1 wide and 1 deep",
-        |away, tall| gully(away, 0.1 * tall, tall),
-        false,
-    ),
-    (
-        "slope of 20 degrees",
-        |away, tall| slope(away, tall, 20.0),
-        true,
-    ),
-    (
-        "slope of 45 degrees",
-        |away, tall| slope(away, tall, 45.0),
-        false,
-    ),
-    (
-        "slope down of 20 degrees",
-        |away, tall| slope(away, -tall, -20.0),
-        true,
-    ),
+    ("step of 0.02", Step(0.02), true),
+    ("drop of 0.02", Step(-0.02), true),
+    ("step of 0.12", Step(0.12), false),
+    ("step of 0.29", Step(0.29), false),
+    ("cliff of 0.12", Step(-0.12), false),
+    ("cliff of 0.4", Step(-0.4), false),
+    ("cliff of 3", Step(-3.0), false),
+    ("gully, 0.5 wide and 0.3 deep", Gully(0.5, 0.3), false),
+    ("gully, 0.1 wide and 1 deep", Gully(0.1, 1.0), false),
+    ("slope of 20 degrees", Slope(1.0, 20.0), true),
+    ("slope of 45 degrees", Slope(1.0, 45.0), false),
+    ("slope down of 20 degrees", Slope(-1.0, -20.0), true),
 ];
 
 /// Distance along +Z at which the ground begins, metres.
@@ -130,25 +111,22 @@ const NEAR: f64 = -2000.0;
 /// Distance along +Z at which the ground ends, metres.
 const FAR: f64 = 4000.0;
 
-fn step(away: f64, rise: f64) -> Vec<[f64; 2]> {
-    vec![[NEAR, 0.0], [away, 0.0], [away, rise], [FAR, rise]]
-}
-
-fn gully(away: f64, wide: f64, deep: f64) -> Vec<[f64; 2]> {
-    let end = away + wide;
-    vec![
-        [NEAR, 0.0],
-        [away, 0.0],
-        [away, -deep],
-        [end, -deep],
-        [end, 0.0],
-        [FAR, 0.0],
-    ]
-}
-
-fn slope(away: f64, rise: f64, degrees: f64) -> Vec<[f64; 2]> {
-    let end = away + rise / libm::tan(degrees.to_radians());
-    vec![[NEAR, 0.0], [away, 0.0], [end, rise], [FAR, rise]]
+impl Profile {
+    /// The profile with its edge at the distance `away`, for a creature of the height `tall`, metres.
+    fn strips(self, away: f64, tall: f64) -> TriangleTerrain {
+        let beyond = match self {
+            Step(rise) => vec![[away, rise * tall], [FAR, rise * tall]],
+            Gully(wide, deep) => {
+                let (end, low) = (away + wide * tall, -deep * tall);
+                vec![[away, low], [end, low], [end, 0.0], [FAR, 0.0]]
+            }
+            Slope(rise, degrees) => {
+                let end = away + rise * tall / libm::tan(degrees.to_radians());
+                vec![[end, rise * tall], [FAR, rise * tall]]
+            }
+        };
+        strips(&[vec![[NEAR, 0.0], [away, 0.0]], beyond].concat())
+    }
 }
 
 fn to_edge(
@@ -158,7 +136,7 @@ fn to_edge(
 ) {
     let away = reach(kind, *height) + height;
     let goal = 2.0 * away + 2.0 * height;
-    let ground = strips(&profile(away, *height));
+    let ground = profile.strips(away, *height);
     let terrain: [&dyn Obstacle; 1] = [&ground];
     let walk = walk(kind, *height, &terrain, goal);
     let told = format!("{name}, {what} at {away:.1}: {walk:.2?}");
@@ -217,8 +195,7 @@ fn two_creatures_do_not_walk_into_each_other() {
             };
             Creature::new(Arc::clone(kind), config).unwrap()
         });
-        let ground = clamber_world::HalfSpace::below(0.0);
-        let terrain: [&dyn Obstacle; 1] = [&ground];
+        let terrain = level_ground();
         let mut deepest = 0f64;
         let mut near = f64::INFINITY;
         let mut skin: Vec<Vec3> = Vec::new();
@@ -227,10 +204,9 @@ fn two_creatures_do_not_walk_into_each_other() {
                 let [a, b] = &mut both;
                 let (own, other) = if one == 0 { (a, b) } else { (b, a) };
                 let goes = if one == 0 { 1.0 } else { -1.0 };
-                let noises = [Noise {
-                    place: other.state().position() + DVec3::Z * (goes * beyond * height),
-                    loudness: 5.0,
-                }];
+                let noises = [noise(
+                    other.state().position() + DVec3::Z * (goes * beyond * height),
+                )];
                 let skins: [&dyn Obstacle; 1] = [other.surface()];
                 let around = Surroundings {
                     terrain: &terrain,
@@ -289,7 +265,7 @@ fn edges_stop_who_runs() {
         let kind = crate::support::kind_at(&file.to_string(), tick);
         for (what, profile, passes) in GROUNDS {
             let away = 60.0 + 20.0 * height;
-            let ground = strips(&profile(away, height));
+            let ground = profile.strips(away, height);
             let terrain: [&dyn Obstacle; 1] = [&ground];
             let walk = run(&kind, &terrain, 2.0 * away, away + 2.0 * height);
             let told = format!("{height} m at {speed} m/s, {what}: {walk:.2?}");
@@ -320,16 +296,8 @@ fn run(kind: &Arc<CreatureKind>, terrain: &[&dyn Obstacle], goal: f64, enough: f
     let mut creature = Creature::new(Arc::clone(kind), config()).unwrap();
     let mut run = Run::default();
     for _ in 0..(60.0 / kind.brain().tick()) as u32 {
-        let noises = [Noise {
-            place: DVec3::Z * goal,
-            loudness: 5.0,
-        }];
-        let around = Surroundings {
-            terrain,
-            noises: &noises,
-            ..Surroundings::default()
-        };
-        creature.step(&around).unwrap();
+        let noises = [noise(DVec3::Z * goal)];
+        creature.step(&with_noises(terrain, &noises)).unwrap();
         let state = creature.state();
         run.blocked |= state.senses().get(Sense::Blocked) > 0.0;
         run.far = run.far.max(state.position().z);

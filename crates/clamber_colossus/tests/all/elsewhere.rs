@@ -1,36 +1,17 @@
 //! Third-party files: the brain's file adds the facts that they lack.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
-use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::support::{TICK, person};
+use crate::support::{TICK, level_ground, noise, person, test_rig, with_noises, with_people};
 use clamber_animation::SeamProbe;
 use clamber_animation::rig::{
     Channel, Clip, Interpolation, JointId, Keyframes, Marker, Playback, Skeleton, Transform,
 };
-use clamber_colossus::{
-    Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, Noise, Surroundings,
-};
-use clamber_gltf::load;
+use clamber_colossus::{Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind};
 use clamber_surface::mesh::Rig;
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId};
-use clamber_world::{HalfSpace, Obstacle};
 use glam::{DVec3, Quat, Vec3};
 use serde_json::{Value, json};
-
-fn rig(file: &str) -> Option<Rig> {
-    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
-        eprintln!("SKIPPED {file}: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
-        return None;
-    };
-    Some(
-        load(PathBuf::from(root).join("models").join(file))
-            .unwrap()
-            .rig,
-    )
-}
 
 fn try_kind(rig: &Rig, brain: &Value) -> Result<Arc<CreatureKind>, String> {
     let brain = Brain::from_json(&brain.to_string(), TICK).map_err(|error| error.to_string())?;
@@ -60,7 +41,9 @@ fn trex() -> Value {
 
 #[test]
 fn markers_and_weak_points_of_the_brains_file_are_as_good_as_the_files_own() {
-    let Some(rig) = rig("Trex.glb") else { return };
+    let Some(rig) = test_rig("Trex.glb") else {
+        return;
+    };
     let kind = try_kind(&rig, &trex()).unwrap();
     let names: Vec<&str> = kind
         .weak_points()
@@ -84,18 +67,12 @@ fn markers_and_weak_points_of_the_brains_file_are_as_good_as_the_files_own() {
     assert!(at.distance(ahead) < 1e-3 * kind.height(), "{at}");
     let radius = f64::from(point.radius) * creature.scale();
     assert!((radius - 1.2).abs() < 1e-3, "{radius} m");
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     let (mut blows, mut snaps) = (0, 0);
     for _ in 0..300 {
         let mouth = creature.weak_point(0).unwrap();
         let people = [person(mouth - DVec3::Y * 0.8)];
-        let around = Surroundings {
-            terrain: &terrain,
-            people: &people,
-            ..Surroundings::default()
-        };
-        let report = creature.step(&around).unwrap();
+        let report = creature.step(&with_people(&terrain, &people)).unwrap();
         blows += report.blows.len();
         let is_snap = |event: &&CreatureEvent| matches!(event, CreatureEvent::Marker { name } if name == "snap");
         snaps += report.events.iter().filter(is_snap).count();
@@ -107,7 +84,9 @@ fn markers_and_weak_points_of_the_brains_file_are_as_good_as_the_files_own() {
 
 #[test]
 fn skin_is_fur_by_joint_and_by_material() {
-    let Some(rig) = rig("Trex.glb") else { return };
+    let Some(rig) = test_rig("Trex.glb") else {
+        return;
+    };
     let with = |fur: Value| {
         let mut brain = trex();
         brain["body"]["fur"] = fur;
@@ -232,7 +211,7 @@ fn ragged(joint: JointId) -> Clip {
 
 #[test]
 fn a_clip_that_is_closed_goes_back_to_its_beginning_and_is_as_before_until_then() {
-    let Some(mut rig) = rig("Trex.glb") else {
+    let Some(mut rig) = test_rig("Trex.glb") else {
         return;
     };
     let joint = rig.skeleton.find("Neck").unwrap();
@@ -278,7 +257,7 @@ fn a_clip_that_is_closed_goes_back_to_its_beginning_and_is_as_before_until_then(
 
 #[test]
 fn a_spline_of_rotations_closes_the_short_way() {
-    let Some(mut rig) = rig("Trex.glb") else {
+    let Some(mut rig) = test_rig("Trex.glb") else {
         return;
     };
     let joint = rig.skeleton.find("Neck").unwrap();
@@ -312,7 +291,9 @@ fn a_spline_of_rotations_closes_the_short_way() {
 
 #[test]
 fn a_clip_that_jumps_does_so_no_more_when_it_is_closed() {
-    let Some(rig) = rig("Trex.glb") else { return };
+    let Some(rig) = test_rig("Trex.glb") else {
+        return;
+    };
     // At the end of this clip the Trex lies on its back.
     let death = "Armature|TRex_Death";
     let seam = |close: Option<f64>| {
@@ -331,7 +312,9 @@ fn a_clip_that_jumps_does_so_no_more_when_it_is_closed() {
 
 #[test]
 fn what_cannot_be_is_refused_by_name() {
-    let Some(rig) = rig("Trex.glb") else { return };
+    let Some(rig) = test_rig("Trex.glb") else {
+        return;
+    };
     let changed = |pointer: &str, value: Value| {
         let mut file = trex();
         *file.pointer_mut(pointer).unwrap() = value;
@@ -421,7 +404,9 @@ fn turned(rig: &Rig, turn: Quat) -> Rig {
 /// A model that faces another way lives like one that faces +Z, if the brain's file says which way it faces.
 #[test]
 fn a_file_that_looks_another_way_lives_alike() {
-    let Some(rig) = rig("Fox.glb") else { return };
+    let Some(rig) = test_rig("Fox.glb") else {
+        return;
+    };
     let leg = |joints: [&str; 3]| json!({ "joints": joints });
     let brain = |facing: &str| {
         json!({
@@ -443,8 +428,7 @@ fn a_file_that_looks_another_way_lives_alike() {
     };
     let ahead = try_kind(&rig, &brain("+z")).unwrap();
     assert!(ahead.walks_aside().unwrap().abs() < 20.0);
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     for (facing, turn) in [
         ("-z", std::f32::consts::PI),
         ("+x", std::f32::consts::FRAC_PI_2),
@@ -463,15 +447,8 @@ fn a_file_that_looks_another_way_lives_alike() {
         let mut creatures = [&ahead, &other]
             .map(|kind| Creature::new(Arc::clone(kind), CreatureConfig::default()).unwrap());
         for tick in 0..900u32 {
-            let noises = [Noise {
-                place: DVec3::new(9.0, 0.0, 14.0),
-                loudness: 5.0,
-            }];
-            let around = Surroundings {
-                terrain: &terrain,
-                noises: &noises[..usize::from(tick % 300 < 9)],
-                ..Surroundings::default()
-            };
+            let noises = [noise(DVec3::new(9.0, 0.0, 14.0))];
+            let around = with_noises(&terrain, &noises[..usize::from(tick % 300 < 9)]);
             for creature in &mut creatures {
                 creature.step(&around).unwrap();
             }

@@ -1,16 +1,18 @@
 //! Feet on rough ground: scenes B44 and B45.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::support;
 
-use crate::support::{Feel, Sole, TICK, ground, sole, strew_boulders};
-use clamber_animation::rig::JointId;
+use std::sync::Arc;
+
+use crate::support::{
+    Feel, Sole, TICK, add_block, ground, joint_place as place, on_terrain, sole, strew_boulders,
+    terrain_of,
+};
 use clamber_animation::{PoseBuffers, joint_in_model};
-use clamber_colossus::{Creature, CreatureConfig, Surroundings};
+use clamber_colossus::{Creature, CreatureConfig, CreatureKind};
 use clamber_surface::mesh::VertexId;
-use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld};
-use clamber_world::{BodyPoses, Obstacle, RapierTerrain};
+use clamber_world::rapier3d::prelude::PhysicsWorld;
+use clamber_world::{Obstacle, RapierTerrain};
 use glam::DVec3;
 
 /// States in which the giant rests and walks about, as JSON.
@@ -51,13 +53,9 @@ fn walk(world: &PhysicsWorld, config: CreatureConfig, seconds: f64) -> Figures {
     let kind = support::kind(&file);
     let mut giant = support::creature(&kind, config);
     let (mut clip_pose, mut buffers) = (kind.skeleton().rest_pose(), PoseBuffers::default());
-    let poses = BodyPoses::default();
-    let terrain = RapierTerrain::of_world(world, &poses);
+    let terrain = terrain_of(world);
     let all: [&dyn Obstacle; 1] = [&terrain];
-    let around = Surroundings {
-        terrain: &all,
-        ..Surroundings::default()
-    };
+    let around = on_terrain(&all);
     let find = |name| kind.skeleton().find(name).unwrap();
     let soles = ["foot.L", "foot.R"].map(|name| sole(&kind, name));
     let watched = ["pelvis", "head", "toe.L", "toe.R"].map(find);
@@ -127,12 +125,6 @@ fn walk(world: &PhysicsWorld, config: CreatureConfig, seconds: f64) -> Figures {
     figures.jerks /= swings;
     println!("{figures:#.3?}");
     figures
-}
-
-fn place(creature: &Creature, joint: JointId) -> DVec3 {
-    let frame = creature.palette().model_from_joint(joint).unwrap();
-    let world = creature.surface().world_from_model();
-    world.transform_point(frame.translation)
 }
 
 /// The least height of a sole's skin above the ground, at sampled points of its triangles.
@@ -221,19 +213,21 @@ fn at_other_sizes() {
     }
 }
 
+/// The giant with a brain in which it only rests.
+fn resting() -> Arc<CreatureKind> {
+    let states = r#"{ "rests": { "act": { "play": "idle" } } }"#;
+    support::kind(&support::brain_with("rests", states))
+}
+
 /// The block below a foot is removed, and the foot comes down to the ground.
 #[test]
 fn a_foot_comes_down_where_its_ground_is_gone() {
     let mut world = ground(|_, _| 0.0);
-    let kind = support::kind(&support::brain_with(
-        "rests",
-        r#"{ "rests": { "act": { "play": "idle" } } }"#,
-    ));
+    let kind = resting();
     let mut giant = support::creature(&kind, config());
     let ball = place(&giant, kind.skeleton().find("toe.L").unwrap());
-    let block = ColliderBuilder::cuboid(4.0, 1.0, 8.0).translation(ball.with_y(0.5).as_vec3());
-    let block = world.insert_collider(block, None);
-    world.detect_collisions(&(), &());
+    let half = DVec3::new(4.0, 1.0, 8.0);
+    let block = add_block(&mut world, ball.with_y(0.5), half);
     let soles = [sole(&kind, "foot.L"), sole(&kind, "foot.R")];
     let mut skin = Vec::new();
     let mut heights = Vec::new();
@@ -241,14 +235,9 @@ fn a_foot_comes_down_where_its_ground_is_gone() {
         if tick == 240 {
             world.colliders[block].set_enabled(false);
         }
-        let poses = BodyPoses::default();
-        let terrain = RapierTerrain::of_world(&world, &poses);
+        let terrain = terrain_of(&world);
         let all: [&dyn Obstacle; 1] = [&terrain];
-        let around = Surroundings {
-            terrain: &all,
-            ..Surroundings::default()
-        };
-        giant.step(&around).unwrap();
+        giant.step(&on_terrain(&all)).unwrap();
         giant.surface().clone().skin_all(&mut skin);
         heights.push([0, 1].map(|foot| lowest(&giant, &skin, &soles[foot], &terrain)));
     }
@@ -265,21 +254,15 @@ fn a_foot_comes_down_where_its_ground_is_gone() {
 /// A foot beside a wall is not put onto the wall, even if its sole reaches into it.
 #[test]
 fn a_wall_is_not_stepped_on() {
-    let kind = support::kind(&support::brain_with(
-        "rests",
-        r#"{ "rests": { "act": { "play": "idle" } } }"#,
-    ));
+    let kind = resting();
     let left = kind.skeleton().find("toe.L").unwrap();
     let mut world = ground(|_, _| 0.0);
     let alone = support::creature(&kind, config());
     let ball = place(&alone, left);
     // The wall begins 1 m beside the ball of the left foot, below the outer half of that foot.
-    let wall = ColliderBuilder::cuboid(10.0, 10.0, 40.0)
-        .translation((ball.with_y(10.0) + DVec3::X * 11.0).as_vec3());
-    world.insert_collider(wall, None);
-    world.detect_collisions(&(), &());
-    let poses = BodyPoses::default();
-    let terrain = RapierTerrain::of_world(&world, &poses);
+    let middle = ball.with_y(10.0) + DVec3::X * 11.0;
+    add_block(&mut world, middle, DVec3::new(10.0, 10.0, 40.0));
+    let terrain = terrain_of(&world);
     let all: [&dyn Obstacle; 1] = [&terrain];
     let mut giant = support::creature(&kind, config());
     let reaches = |giant: &Creature| {
@@ -288,11 +271,7 @@ fn a_wall_is_not_stepped_on() {
             .any(|corner| corner.x > f64::from((ball.x + 1.0) as f32))
     };
     for _ in 0..120 {
-        let around = Surroundings {
-            terrain: &all,
-            ..Surroundings::default()
-        };
-        giant.step(&around).unwrap();
+        giant.step(&on_terrain(&all)).unwrap();
     }
     assert!(reaches(&giant), "the foot does not reach into the wall");
     let rise = place(&giant, left).y - ball.y;

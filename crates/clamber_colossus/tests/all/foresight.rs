@@ -1,13 +1,13 @@
 //! `foresee` predicts the coming pose of a creature, as long as its brain decides nothing else.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::carried::Deck;
-use crate::support::{TICK, brain_with, creature, kind};
+use crate::support::{
+    TICK, brain_with, creature, joint_place, kind, level_ground, noise, with_noises,
+};
 use clamber_animation::rig::Palette;
-use clamber_colossus::{CreatureConfig, Foresight, Noise, Surroundings};
+use clamber_colossus::{CreatureConfig, Foresight};
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
-use clamber_world::{HalfSpace, Obstacle};
+use clamber_world::Obstacle;
 use glam::DVec3;
 
 /// States in which the giant turns to a noise and then walks there, as JSON.
@@ -22,8 +22,7 @@ const HUNTS: &str = r#"{
 /// While the giant walks, turns and stops, a hand is foreseen two seconds ahead to 0.3 m.
 #[test]
 fn a_hand_is_foreseen_walking_and_turning() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     for scale in [1.0, 0.1, 4.0] {
         // Times scale with the square root of the size.
         let slow = f64::sqrt(scale);
@@ -47,21 +46,14 @@ fn a_hand_is_foreseen_walking_and_turning() {
             // In each round it hears a noise at another place.
             let angle = (tick / round) as f64 * 2.2 + 0.7;
             let place = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * (70.0 * scale);
-            let noises = [Noise {
-                place,
-                loudness: 5.0,
-            }];
-            let around = Surroundings {
-                terrain: &terrain,
-                noises: &noises[..usize::from(tick % round < 5)],
-                ..Surroundings::default()
-            };
-            giant.step(&around).unwrap();
-            let frame = giant.palette().model_from_joint(hand).unwrap();
-            let now = giant
-                .surface()
-                .world_from_model()
-                .transform_point(frame.translation);
+            let noises = [noise(place)];
+            giant
+                .step(&with_noises(
+                    &terrain,
+                    &noises[..usize::from(tick % round < 5)],
+                ))
+                .unwrap();
+            let now = joint_place(&giant, hand);
             let state = giant.state().current();
             let key = (state, giant.state().animator().layers()[0].clip);
             // A noise within the foreseen time changes its goal, so such ticks are skipped.
@@ -130,16 +122,10 @@ fn on_moving_ground_a_hand_is_foreseen_too() {
                 at.translation += at.rotation * velocity * TICK;
                 let deck = Deck { before, now: at };
                 let terrain: [&dyn Obstacle; 1] = [&deck];
-                let noises = [Noise {
-                    place: at.transform_point(DVec3::Z * 90.0),
-                    loudness: 5.0,
-                }];
-                let around = Surroundings {
-                    terrain: &terrain,
-                    noises: &noises[..usize::from(walks)],
-                    ..Surroundings::default()
-                };
-                giant.step(&around).unwrap();
+                let noises = [noise(at.transform_point(DVec3::Z * 90.0))];
+                giant
+                    .step(&with_noises(&terrain, &noises[..usize::from(walks)]))
+                    .unwrap();
                 let place = |palette: &Palette, world: &Similarity| {
                     let frame = palette.model_from_joint(hand).unwrap();
                     world.transform_point(frame.translation)

@@ -1,22 +1,22 @@
 //! The giant lives by its own brain. The brain is sound, and its life is the same on any thread and after a load.
 //! Scenes B38 and B48.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::support;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use crate::support::{TICK, brain_file, creature, ground, kind};
+use crate::support::{
+    TICK, brain_file, creature, ground, kind, level_ground, on_terrain, rider, terrain_of,
+};
 use clamber_colossus::brain::MOST_TRANSITIONS;
 use clamber_colossus::{
     Brain, BrainState, CreatureConfig, CreatureKind, CreatureState, Noise, Person, RegionSense,
-    Riding, Sense, Surroundings, Wound,
+    Sense, Surroundings, Wound,
 };
 use clamber_surface::mesh::TriangleId;
 use clamber_world::rapier3d::prelude::PhysicsWorld;
-use clamber_world::{BodyPoses, HalfSpace, MaterialPoint, Obstacle, RapierTerrain, WorldCapsule};
+use clamber_world::{MaterialPoint, Obstacle};
 use glam::DVec3;
 
 /// The brain file in the documentation fits the giant.
@@ -190,8 +190,7 @@ impl Life {
 
     /// The states of the life after every 1000 ticks. If `loads`, the state is also saved and loaded at random ticks.
     fn live(&self, ticks: u64, loads: bool) -> Vec<CreatureState> {
-        let poses = BodyPoses::default();
-        let terrain = RapierTerrain::of_world(&self.world, &poses);
+        let terrain = terrain_of(&self.world);
         let terrain: [&dyn Obstacle; 1] = [&terrain];
         let mut giant = creature(&self.kind, CreatureConfig::default());
         let mut states = Vec::new();
@@ -203,18 +202,12 @@ impl Life {
             for id in 0..3 {
                 let (x, z) = (random.f64() * 80.0 - 40.0, random.f64() * 80.0 - 40.0);
                 let at = DVec3::new(x, 0.0, z) + DVec3::X * (0.01 * (tick % 300) as f64);
-                let triangle = TriangleId(random.u32(..1_000));
-                let rides = random.u32(..4) == 0;
+                let rider = rider(at, TriangleId(random.u32(..1_000)));
+                let riding = rider.riding.filter(|_| random.u32(..4) == 0);
                 people.push(Person {
                     id,
-                    body: WorldCapsule {
-                        ends: [at + DVec3::Y * 0.3, at + DVec3::Y * 1.45],
-                        radius: 0.3,
-                    },
-                    riding: rides.then(|| Riding {
-                        at: MaterialPoint::on_triangle(triangle, [1.0 / 3.0; 3]),
-                        hangs: false,
-                    }),
+                    riding,
+                    ..rider
                 });
             }
             let noise = Noise {
@@ -289,12 +282,8 @@ fn a_state_of_another_kind_is_refused_and_changes_nothing() {
 #[test]
 fn a_forged_state_is_refused_or_steps() {
     let kind = support::kind(&support::brain_file());
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
-    let around = Surroundings {
-        terrain: &terrain,
-        ..Surroundings::default()
-    };
+    let terrain = level_ground();
+    let around = on_terrain(&terrain);
     let mut giant = support::creature(&kind, CreatureConfig::default());
     for _ in 0..200 {
         giant.step(&around).unwrap();

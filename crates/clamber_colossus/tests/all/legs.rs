@@ -1,17 +1,15 @@
 //! Knees bend one way, and legs pass beside each other: the second half of scene B44.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::support;
 
-use crate::support::{TICK, ground, person, strew_boulders};
+use crate::support::{TICK, ground, person, strew_boulders, terrain_of, with_people};
 use clamber_animation::rig::JointId;
-use clamber_colossus::{Creature, CreatureConfig, CreatureKind, Surroundings};
+use clamber_colossus::{Creature, CreatureConfig, CreatureKind};
 use clamber_surface::mesh::VertexId;
+use clamber_world::Obstacle;
 use clamber_world::rapier3d::parry::query::contact;
 use clamber_world::rapier3d::parry::shape::ConvexPolyhedron;
 use clamber_world::rapier3d::prelude::{PhysicsWorld, Pose};
-use clamber_world::{BodyPoses, Obstacle, RapierTerrain};
 use glam::{DQuat, DVec3, Vec3};
 
 /// States in which the giant walks about, kicks and stomps, as JSON.
@@ -80,8 +78,7 @@ fn live(world: &PhysicsWorld, seed: u64, seconds: f64) -> Figures {
         ..CreatureConfig::default()
     };
     let mut giant = support::creature(&kind, config);
-    let poses = BodyPoses::default();
-    let terrain = RapierTerrain::of_world(world, &poses);
+    let terrain = terrain_of(world);
     let all: [&dyn Obstacle; 1] = [&terrain];
     let find = |name: &str| kind.skeleton().find(name).unwrap();
     let legs = ["L", "R"]
@@ -101,12 +98,7 @@ fn live(world: &PhysicsWorld, seed: u64, seconds: f64) -> Figures {
     };
     for tick in 0..(seconds / TICK) as usize {
         let people = [person(giant.state().position() + DVec3::new(3.0, 0.0, 9.0))];
-        let around = Surroundings {
-            terrain: &all,
-            people: &people,
-            ..Surroundings::default()
-        };
-        giant.step(&around).unwrap();
+        giant.step(&with_people(&all, &people)).unwrap();
         let frame = |joint| giant.palette().model_from_joint(joint).unwrap();
         let pelvis = frame(find("pelvis")).to_scale_rotation_translation().1;
         // Forward turns with the pelvis, relative to its rest pose.

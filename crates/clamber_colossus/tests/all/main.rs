@@ -1,5 +1,7 @@
 //! Tests of creatures and their brains through the public interface.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 mod animals;
 mod attacks;
 mod between;

@@ -1,27 +1,16 @@
 //! Mouths and hands aim as feet do: they move to the person that they strike, and back.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
-use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::support::{TICK, person};
-use clamber_colossus::{Brain, BrainFile, Creature, CreatureConfig, CreatureKind, Surroundings};
-use clamber_gltf::load;
-use clamber_world::{HalfSpace, Obstacle};
+use crate::support::{TICK, joint_place, level_ground, on_terrain, person, test_rig, with_people};
+use clamber_colossus::{Brain, BrainFile, Creature, CreatureConfig, CreatureKind};
 use glam::DVec3;
 use serde_json::{Value, json};
 
 /// An animal that waits for a second and then runs the attack that is proposed for it. It dies if its only weak point
 /// is used up.
 fn animal(file: &str, height: f64, aim: f64) -> Option<Arc<CreatureKind>> {
-    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
-        eprintln!("SKIPPED {file}: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
-        return None;
-    };
-    let rig = load(PathBuf::from(root).join("models").join(file))
-        .unwrap()
-        .rig;
+    let rig = test_rig(file)?;
     let proposed = BrainFile::propose(&rig, height).unwrap();
     let proposed = serde_json::to_value(&proposed).unwrap();
     let mut act: Value =
@@ -54,25 +43,15 @@ fn spot(kind: &Arc<CreatureKind>) -> DVec3 {
         unreachable!("it attacks");
     };
     let end = kind.skeleton().find(attack.limb.last().unwrap()).unwrap();
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     let mut last = DVec3::ZERO;
     for _ in 0..1_200 {
-        creature
-            .step(&Surroundings {
-                terrain: &terrain,
-                ..Surroundings::default()
-            })
-            .unwrap();
+        creature.step(&on_terrain(&terrain)).unwrap();
         if creature
             .attack()
             .is_some_and(|(_, phase)| phase == clamber_colossus::AttackPhase::Active)
         {
-            let frame = creature.palette().model_from_joint(end).unwrap();
-            last = creature
-                .surface()
-                .world_from_model()
-                .transform_point(frame.translation);
+            last = joint_place(&creature, end);
         }
     }
     last
@@ -87,16 +66,15 @@ fn struck(kind: &Arc<CreatureKind>, spot: DVec3, within: f64) -> usize {
         let aside = DVec3::new(libm::cos(turn), 0.0, libm::sin(turn)) * (within * share.sqrt());
         let victim = person(spot + aside - DVec3::Y * 0.875);
         let mut creature = Creature::new(Arc::clone(kind), CreatureConfig::default()).unwrap();
-        let ground = HalfSpace::below(0.0);
-        let terrain: [&dyn Obstacle; 1] = [&ground];
+        let terrain = level_ground();
         let people = [victim];
         for _ in 0..1_200 {
-            let around = Surroundings {
-                terrain: &terrain,
-                people: &people,
-                ..Surroundings::default()
-            };
-            if !creature.step(&around).unwrap().blows.is_empty() {
+            if !creature
+                .step(&with_people(&terrain, &people))
+                .unwrap()
+                .blows
+                .is_empty()
+            {
                 count += 1;
                 break;
             }
@@ -136,8 +114,7 @@ fn a_mouth_goes_to_whom_it_bites() {
 /// on a person. If `dies` is given, the animal dies in that tick.
 fn jerk(kind: &Arc<CreatureKind>, at: DVec3, dies: Option<usize>) -> (f64, Vec<DVec3>) {
     let mut creature = Creature::new(Arc::clone(kind), CreatureConfig::default()).unwrap();
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     let people = [person(at - DVec3::Y * 0.875)];
     let end = kind.skeleton().find("Head").unwrap();
     let (mut before, mut speed): (Option<DVec3>, Option<DVec3>) = (None, None);
@@ -146,17 +123,8 @@ fn jerk(kind: &Arc<CreatureKind>, at: DVec3, dies: Option<usize>) -> (f64, Vec<D
         if dies == Some(tick) {
             assert!(creature.harm(0, 100.0).is_some());
         }
-        let around = Surroundings {
-            terrain: &terrain,
-            people: &people,
-            ..Surroundings::default()
-        };
-        creature.step(&around).unwrap();
-        let frame = creature.palette().model_from_joint(end).unwrap();
-        let now = creature
-            .surface()
-            .world_from_model()
-            .transform_point(frame.translation);
+        creature.step(&with_people(&terrain, &people)).unwrap();
+        let now = joint_place(&creature, end);
         let moved = before.map(|before| (now - before) / TICK);
         if let (Some(a), Some(b)) = (moved, speed) {
             worst = worst.max(a.distance(b) / TICK);

@@ -1,22 +1,23 @@
 //! Orders of a game to a creature: to be put somewhere, to go somewhere, to enter a state, and to be hurt.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::sync::Arc;
 
-use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, CreatureKind, Surroundings};
+use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, CreatureKind};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::surface::TargetMotion;
-use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
+use clamber_world::rapier3d::prelude::PhysicsWorld;
 use clamber_world::{
-    BodyPoses, Contact, HalfSpace, MaterialPoint, Obstacle, PointMotion, RapierTerrain,
-    SweepContact, WorldCapsule,
+    Contact, HalfSpace, MaterialPoint, Obstacle, PointMotion, RapierTerrain, SweepContact,
+    WorldCapsule,
 };
 use glam::DVec3;
 
 use crate::carried::Deck;
-use crate::support::{TICK, brain_file, brain_with, creature, kind as giant, person};
+use crate::support::{
+    TICK, add_block, brain_file, brain_with, creature, kind as giant, level_ground, on_terrain,
+    person, terrain_of, with_people,
+};
 use crate::walls::creatures;
 
 fn level(a: DVec3, b: DVec3) -> f64 {
@@ -26,10 +27,7 @@ fn level(a: DVec3, b: DVec3) -> f64 {
 /// Steps a creature until it arrives or stops, for at most `most` ticks. Returns the event and the number of ticks.
 fn go(one: &mut Creature, terrain: &dyn Obstacle, most: u32) -> (Option<CreatureEvent>, u32) {
     let terrain = [terrain];
-    let around = Surroundings {
-        terrain: &terrain,
-        ..Surroundings::default()
-    };
+    let around = on_terrain(&terrain);
     for tick in 0..most {
         let report = one.step(&around).unwrap();
         let end = report.events.iter().find(|event| {
@@ -151,15 +149,15 @@ fn goes_beyond_its_arena_and_can_be_called_back() {
 #[test]
 fn goes_round_walls_and_says_where_it_cannot_go() {
     let mut world = PhysicsWorld::default();
-    let floor = ColliderBuilder::cuboid(400.0, 1.0, 400.0);
-    world.insert_collider(floor.position(Pose::translation(0.0, -1.0, 0.0)), None);
-    let wall = ColliderBuilder::cuboid(30.0, 30.0, 4.0);
-    world.insert_collider(wall.position(Pose::translation(0.0, 30.0, 60.0)), None);
-    let rock = ColliderBuilder::cuboid(60.0, 30.0, 60.0);
-    world.insert_collider(rock.position(Pose::translation(200.0, 30.0, 0.0)), None);
-    world.detect_collisions(&(), &());
-    let poses = BodyPoses::new();
-    let terrain = RapierTerrain::of_world(&world, &poses);
+    // A floor, a wall and a rock.
+    for [at, half] in [
+        [DVec3::NEG_Y, DVec3::new(400.0, 1.0, 400.0)],
+        [DVec3::new(0.0, 30.0, 60.0), DVec3::new(30.0, 30.0, 4.0)],
+        [DVec3::new(200.0, 30.0, 0.0), DVec3::new(60.0, 30.0, 60.0)],
+    ] {
+        add_block(&mut world, at, half);
+    }
+    let terrain = terrain_of(&world);
     let kind = giant(&brain_file());
     let mut one = creature(&kind, at(DVec3::ZERO, 0.0));
     let behind = DVec3::new(0.0, 0.0, 130.0);
@@ -241,11 +239,7 @@ fn states_are_entered_by_name_and_weak_points_are_hurt_by_number() {
         );
         let to = one.state().current();
         let terrain: [&dyn Obstacle; 1] = [&ground];
-        let around = Surroundings {
-            terrain: &terrain,
-            ..Surroundings::default()
-        };
-        let events = one.step(&around).unwrap().events.clone();
+        let events = one.step(&on_terrain(&terrain)).unwrap().events.clone();
         let enters = |event: &CreatureEvent| matches!(event, CreatureEvent::Entered { to: into, .. } if *into == to);
         assert!(events.iter().any(enters), "{path}");
     }
@@ -266,8 +260,7 @@ fn states_are_entered_by_name_and_weak_points_are_hurt_by_number() {
 /// not called.
 #[test]
 fn calling_back_who_was_not_sent_changes_nothing() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     let file: serde_json::Value = serde_json::from_str(&brain_file()).unwrap();
     let stomp = &file["states"]["alive"]["states"]["alert"]["states"]["stomp_right"]["act"];
     assert!(stomp["attack"].is_object(), "{stomp}");
@@ -285,12 +278,14 @@ fn calling_back_who_was_not_sent_changes_nothing() {
             if index == 1 {
                 assert!(one.send(None));
             }
-            let around = Surroundings {
-                terrain: &terrain,
-                people: &[person(DVec3::new(-3.0, 0.0, 6.0))],
-                ..Surroundings::default()
-            };
-            blows[index] += one.step(&around).unwrap().blows.len();
+            blows[index] += one
+                .step(&with_people(
+                    &terrain,
+                    &[person(DVec3::new(-3.0, 0.0, 6.0))],
+                ))
+                .unwrap()
+                .blows
+                .len();
         }
         assert_eq!(both[0].state(), both[1].state(), "tick {tick}");
     }
@@ -305,16 +300,11 @@ fn who_is_sent_in_each_tick_gets_there_and_looks_no_more_often() {
     let mut asked = [0; 3];
     for (index, moves) in [None, Some(0.0), Some(0.01)].into_iter().enumerate() {
         let mut wall = PhysicsWorld::default();
-        let pose = Pose::translation(0.0, 20.0, 45.0);
-        wall.insert_collider(
-            ColliderBuilder::cuboid(30.0, 25.0, 2.0).position(pose),
-            None,
-        );
-        wall.detect_collisions(&(), &());
-        let poses = BodyPoses::default();
+        let half = DVec3::new(30.0, 25.0, 2.0);
+        add_block(&mut wall, DVec3::new(0.0, 20.0, 45.0), half);
         let counting = Counting {
             ground: HalfSpace::below(0.0),
-            wall: RapierTerrain::of_world(&wall, &poses),
+            wall: terrain_of(&wall),
             asked: std::sync::atomic::AtomicUsize::new(0),
         };
         let mut one = creature(&kind, at(DVec3::ZERO, 0.0));
@@ -414,12 +404,8 @@ fn who_dies_on_the_way_stays_there() {
         "dead": { "final": true, "act": { "once": "die" } }
     }"#;
     let kind = giant(&brain_with("lives", states));
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
-    let around = Surroundings {
-        terrain: &terrain,
-        ..Surroundings::default()
-    };
+    let terrain = level_ground();
+    let around = on_terrain(&terrain);
     for is_ordered in [false, true] {
         let mut one = creature(&kind, at(DVec3::ZERO, 0.0));
         assert!(one.send(Some(DVec3::Z * 80.0)));

@@ -1,7 +1,5 @@
 //! Plates stagger the creature, break, and drop the climbers on them. Weak points open in their order. Scene B47.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::sync::Arc;
 
 use clamber_animation::rig::{Joint, JointId, Skeleton, Transform, WeakPoint};

@@ -1,19 +1,16 @@
 //! Brains that are proposed for third-party creatures.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::animals::animals;
 use crate::sizes::models;
-use crate::support::{TICK, person};
+use crate::support::{TICK, level_ground, on_terrain, person, rider, test_rig, with_people};
 use clamber_animation::rig::{Channel, Clip, Interpolation, JointId, Keyframes, Marker, Skeleton};
 use clamber_animation::{SeamProbe, joint_in_model};
 use clamber_colossus::{
-    Brain, BrainFile, Creature, CreatureConfig, CreatureKind, Noise, Person, Riding, Surroundings,
-    Wound,
+    Brain, BrainFile, Creature, CreatureConfig, CreatureKind, Noise, Person, Surroundings, Wound,
 };
 use clamber_gltf::load;
 use clamber_surface::mesh::{Rig, SurfaceKind, TriangleId};
@@ -53,8 +50,7 @@ struct Life {
 impl Life {
     /// Steps the creature for some seconds.
     fn pass(&mut self, creature: &mut Creature, seconds: f64, people: &[Person], noises: &[Noise]) {
-        let ground = HalfSpace::below(0.0);
-        let terrain: [&dyn Obstacle; 1] = [&ground];
+        let terrain = level_ground();
         let place = creature.state().position();
         let home = self.home.get_or_insert(place).to_owned();
         for _ in 0..(seconds / TICK) as u32 {
@@ -133,13 +129,8 @@ fn lives(height: f64, share: f64) {
                 says("it did not turn", &life)
             );
         }
-        let rider = Person {
-            riding: Some(Riding {
-                at: MaterialPoint::on_triangle(TriangleId(0), [1.0 / 3.0; 3]),
-                hangs: false,
-            }),
-            ..person(creature.state().position() + DVec3::Y * height)
-        };
+        let at = creature.state().position() + DVec3::Y * height;
+        let rider = rider(at, TriangleId(0));
         life.pass(&mut creature, 20.0, &[rider], &[]);
         life.pass(&mut creature, 130.0 * share, &[rider], &[]);
         assert!(
@@ -211,16 +202,14 @@ fn attacks_that_are_proposed_strike_who_stays() {
             } else {
                 DVec3::Z * (0.6 * height)
             })];
-            let ground = HalfSpace::below(0.0);
-            let terrain: [&dyn Obstacle; 1] = [&ground];
+            let terrain = level_ground();
             let most = (180.0 * (height / 20.0).sqrt().max(1.0) / TICK) as u32;
             let struck = (0..most).any(|_| {
-                let around = Surroundings {
-                    terrain: &terrain,
-                    people: &prey,
-                    ..Surroundings::default()
-                };
-                !creature.step(&around).unwrap().blows.is_empty()
+                !creature
+                    .step(&with_people(&terrain, &prey))
+                    .unwrap()
+                    .blows
+                    .is_empty()
             });
             // A creature that cannot walk counts only if the person is within its reach.
             if struck || kind.can_walk() {
@@ -250,10 +239,7 @@ fn attacks_that_are_proposed_strike_who_stays() {
 fn attacks_that_are_proposed_stay_above_the_ground() {
     let ground = HalfSpace::below(0.0);
     let terrain: [&dyn Obstacle; 1] = [&ground];
-    let around = Surroundings {
-        terrain: &terrain,
-        ..Surroundings::default()
-    };
+    let around = on_terrain(&terrain);
     let mut worst = [0f64; 2];
     let mut count = 0;
     for path in models() {
@@ -426,11 +412,7 @@ fn what_is_no_height_is_refused() {
 
 /// The Trex of the test data with a changed rig.
 fn changed(change: impl FnOnce(&mut Rig)) -> Option<Rig> {
-    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
-        eprintln!("SKIPPED files: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
-        return None;
-    };
-    let mut rig = rig(&PathBuf::from(root).join("models").join("Trex.glb")).unwrap();
+    let mut rig = test_rig("Trex.glb")?;
     change(&mut rig);
     Some(rig)
 }

@@ -1,12 +1,10 @@
 //! Attacks from afar: waves, shots and beams. No person behind rock is struck, people that run get away, and the
 //! strength of waves falls off as documented.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::sync::Arc;
 
 use crate::attacks::{attacks, before, spot};
-use crate::support::{TICK, brain_with, creature, kind, person};
+use crate::support::{TICK, brain_with, creature, kind, person, with_people};
 use clamber_colossus::{
     Blow, Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, CreatureReport, Person,
     Surroundings,
@@ -47,6 +45,32 @@ pub(crate) struct Seen {
     pub(crate) events: Vec<(usize, CreatureEvent)>,
 }
 
+impl Seen {
+    /// The ids of the people of the blows, sorted.
+    pub(crate) fn struck(&self) -> Vec<u64> {
+        let mut struck: Vec<u64> = self.blows.iter().map(|(_, blow)| blow.person).collect();
+        struck.sort_unstable();
+        struck
+    }
+
+    /// The ticks and places at which waves began.
+    pub(crate) fn waves(&self) -> Vec<(usize, DVec3)> {
+        let all = self.events.iter().filter_map(|(tick, event)| match event {
+            CreatureEvent::Wave { place, .. } => Some((*tick, *place)),
+            _ => None,
+        });
+        all.collect()
+    }
+
+    /// The place of the first burst.
+    pub(crate) fn burst(&self) -> Option<DVec3> {
+        self.events.iter().find_map(|(_, event)| match event {
+            CreatureEvent::Burst { place, .. } => Some(*place),
+            _ => None,
+        })
+    }
+}
+
 /// Runs an attack on people among obstacles. Both are functions of the seconds since the attack began.
 pub(crate) fn attack<'a>(
     before: &Creature,
@@ -54,6 +78,12 @@ pub(crate) fn attack<'a>(
     terrain: impl Fn(f64) -> Vec<&'a dyn Obstacle>,
 ) -> Seen {
     attack_among(before, people, |since| [terrain(since), Vec::new()])
+}
+
+/// [`attack`] on level ground.
+pub(crate) fn on_ground(before: &Creature, people: impl Fn(f64) -> Vec<Person>) -> Seen {
+    let ground = HalfSpace::below(0.0);
+    attack(before, people, |_| vec![&ground])
 }
 
 /// [`attack`] with two lists of obstacles: terrain and other creatures.
@@ -90,8 +120,7 @@ pub(crate) fn attack_among<'a>(
             seen.events.push((ticks, event));
         }
         // Shots and waves go on after the attack has ended. The burst of a shot counts as the end of the attack, too.
-        let burst = |event: &(usize, CreatureEvent)| matches!(event.1, CreatureEvent::Burst { .. });
-        has_ended |= seen.events.iter().any(burst);
+        has_ended |= seen.burst().is_some();
         if has_ended && giant.shots().next().is_none() && giant.waves().next().is_none() {
             return seen;
         }
@@ -116,9 +145,14 @@ pub(crate) fn places(around: DVec3, radius: f64, seed: u64) -> Vec<(DVec3, DVec3
     (0..1000).map(place).collect()
 }
 
+/// People at these places, with ids from 0 on.
+fn standing(all: &[(DVec3, DVec3)]) -> Vec<Person> {
+    let all = (0..).zip(all);
+    all.map(|(id, (at, _))| somebody(id, *at)).collect()
+}
+
 /// Counts the struck people among a thousand: if all stay, and if all run away from 0.30 s on at 3 m/s.
 fn stay_and_run(before: &Creature, all: &[(DVec3, DVec3)]) -> [usize; 2] {
-    let ground = HalfSpace::below(0.0);
     [0.0, 3.0].map(|speed| {
         let people = |since: f64| {
             let ran = (since - 0.3).max(0.0) * speed;
@@ -126,10 +160,9 @@ fn stay_and_run(before: &Creature, all: &[(DVec3, DVec3)]) -> [usize; 2] {
             all.map(|(id, (at, away))| somebody(id, *at + *away * ran))
                 .collect()
         };
-        let seen = attack(before, people, |_| vec![&ground]);
-        let mut struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
+        let seen = on_ground(before, people);
+        let mut struck = seen.struck();
         let count = struck.len();
-        struck.sort_unstable();
         struck.dedup();
         assert_eq!(struck.len(), count, "somebody was struck twice");
         count
@@ -164,24 +197,12 @@ fn waves_strike_who_stays_and_spare_who_runs() {
 
 #[test]
 fn waves_fall_off_as_stated() {
-    let ground = HalfSpace::below(0.0);
     for speed in [None, Some(5.0), Some(12.0)] {
         let wave = json!({ "radius": 15.0, "speed": speed, "damage": 0.8, "throw": 9.0 });
         let giant = before(&act("stomp_right", json!({ "wave": wave })));
         let all = places(DVec3::new(-3.0, 0.0, 9.0), 20.0, 2);
-        let people = |_| {
-            let all = (0..).zip(&all);
-            all.map(|(id, (at, _))| somebody(id, *at)).collect()
-        };
-        let seen = attack(&giant, people, |_| vec![&ground]);
-        let (began, from) = seen
-            .events
-            .iter()
-            .find_map(|(tick, event)| match event {
-                CreatureEvent::Wave { place, .. } => Some((*tick, *place)),
-                _ => None,
-            })
-            .unwrap();
+        let seen = on_ground(&giant, |_| standing(&all));
+        let (began, from) = seen.waves()[0];
         // The wave begins at the clip's marker, after 1.84 s of the giant's own time.
         assert!((began as f64 * TICK - 1.84).abs() < 3.0 * TICK, "{began}");
         let mut struck = 0;
@@ -220,16 +241,11 @@ fn waves_fall_off_as_stated() {
 /// that comes down behind the front is spared, too.
 #[test]
 fn waves_along_the_ground_are_jumped_over() {
-    let ground = HalfSpace::below(0.0);
     let wave = json!({ "radius": 15.0, "speed": 6.0, "height": 0.5, "damage": 0.8, "throw": 9.0 });
     let giant = before(&act("stomp_right", json!({ "wave": wave })));
     let spot = DVec3::new(-4.0, 0.0, 8.0);
     let due = {
-        let seen = attack(
-            &giant,
-            |_| vec![somebody(1, spot + DVec3::X * 10.0)],
-            |_| vec![&ground],
-        );
+        let seen = on_ground(&giant, |_| vec![somebody(1, spot + DVec3::X * 10.0)]);
         assert_eq!(seen.blows.len(), 1);
         seen.blows[0].0 as f64 * TICK
     };
@@ -249,7 +265,7 @@ fn waves_along_the_ground_are_jumped_over() {
             };
             vec![somebody(1, spot + DVec3::X * 10.0 + DVec3::Y * rise)]
         };
-        let seen = attack(&giant, people, |_| vec![&ground]);
+        let seen = on_ground(&giant, people);
         assert_eq!(seen.blows.len(), hits, "who {what}");
     }
 }
@@ -265,11 +281,8 @@ fn nobody_is_struck_by_a_wave_behind_rock() {
         // A wall of 3 m height and 30 m width, 6 m ahead of the place where the foot comes down.
         let rock = wall(spot + DVec3::new(-15.0, 0.0, 6.0), DVec3::X * 30.0, 3.0);
         let all = places(spot, 18.0, 5);
-        let people = |_| {
-            let all = (0..).zip(&all);
-            all.map(|(id, (at, _))| somebody(id, *at)).collect()
-        };
-        let open = attack(&giant, people, |_| vec![&ground]);
+        let people = |_| standing(&all);
+        let open = on_ground(&giant, people);
         let behind = attack(&giant, people, |_| vec![&ground as &dyn Obstacle, &rock]);
         assert_eq!(open.blows.len(), 1000);
         let mut hidden = 0;
@@ -315,13 +328,12 @@ fn ahead(count: usize, seed: u64) -> Vec<(DVec3, DVec3)> {
 
 /// Counts the people that are struck if each is attacked alone. A person runs at `speed` from `since` seconds on.
 fn one_by_one(giant: &Creature, all: &[(DVec3, DVec3)], [since, speed]: [f64; 2]) -> usize {
-    let ground = HalfSpace::below(0.0);
     let struck = all.iter().map(|(at, away)| {
         let people = |time: f64| {
             let ran = (time - since).max(0.0) * speed;
             vec![somebody(1, *at + *away * ran)]
         };
-        let seen = attack(giant, people, |_| vec![&ground]);
+        let seen = on_ground(giant, people);
         assert!(seen.blows.len() <= 1, "{at}: {:?}", seen.blows);
         seen.blows.len()
     });
@@ -367,10 +379,9 @@ fn what_follows_strikes_who_is_slower() {
         if what == "beam" {
             assert_eq!(slow, 60);
             // The beam overtakes a fast person that stops when it starts to shine.
-            let ground = HalfSpace::below(0.0);
             let (at, away) = all[0];
             let people = |time: f64| vec![somebody(1, at + away * (time.min(1.4) * 7.0))];
-            let seen = attack(&giant, people, |_| vec![&ground]);
+            let seen = on_ground(&giant, people);
             let since = seen.blows[0].0 as f64 * TICK;
             assert!((1.9..2.8).contains(&since), "{since} s");
         } else {
@@ -412,14 +423,10 @@ fn shots_and_beams_end_at_rock_and_at_other_creatures() {
                 }
             };
             let seen = attack_among(&giant, people, obstacles);
-            let open = attack(&giant, people, |_| vec![&ground]);
+            let open = on_ground(&giant, people);
             struck += usize::from(!open.blows.is_empty());
             assert!(seen.blows.is_empty(), "{what} at {at}: {:?}", seen.blows);
-            if let Some((_, CreatureEvent::Burst { place, .. })) = seen
-                .events
-                .iter()
-                .find(|(_, event)| matches!(event, CreatureEvent::Burst { .. }))
-            {
+            if let Some(place) = seen.burst() {
                 // The burst is at the rock, or at the ground in front of it.
                 let depth = place.dot(to) - (at - to * 4.0).dot(to);
                 let is_high = place.y > 1e-3;
@@ -475,12 +482,7 @@ fn under_way() -> (Creature, [Person; 2]) {
 }
 
 fn step(giant: &mut Creature, people: &[Person], ground: &dyn Obstacle) -> CreatureReport {
-    let around = Surroundings {
-        terrain: &[ground],
-        people,
-        ..Surroundings::default()
-    };
-    giant.step(&around).unwrap().clone()
+    giant.step(&with_people(&[ground], people)).unwrap().clone()
 }
 
 /// A stone and a wave that are under way strike even if the giant sleeps, and are part of the saved state.
@@ -672,23 +674,18 @@ fn attacks_out_of_range_are_refused() {
 /// A thrown stone strikes the nearest of several people at the hand, in any order of their ids.
 #[test]
 fn a_stone_strikes_the_nearest_of_those_at_the_hand() {
-    let ground = HalfSpace::below(0.0);
     let giant = before(&act("swipe_right", shot(9.81, false)));
     let prey = DVec3::new(0.0, 0.0, 30.0);
     let begin = |near: Option<DVec3>, swaps: bool| {
-        attack(
-            &giant,
-            |since| {
-                let mut people = vec![somebody(9, prey)];
-                if let Some(hand) = near.filter(|_| since > 0.5) {
-                    let at = |aside: f64| hand + DVec3::new(aside, -0.875, 0.0);
-                    let ids = if swaps { [1, 5] } else { [5, 1] };
-                    people.extend([somebody(ids[0], at(0.1)), somebody(ids[1], at(1.0))]);
-                }
-                people
-            },
-            |_| vec![&ground],
-        )
+        on_ground(&giant, |since| {
+            let mut people = vec![somebody(9, prey)];
+            if let Some(hand) = near.filter(|_| since > 0.5) {
+                let at = |aside: f64| hand + DVec3::new(aside, -0.875, 0.0);
+                let ids = if swaps { [1, 5] } else { [5, 1] };
+                people.extend([somebody(ids[0], at(0.1)), somebody(ids[1], at(1.0))]);
+            }
+            people
+        })
     };
     let hand = begin(None, false)
         .events
@@ -699,7 +696,6 @@ fn a_stone_strikes_the_nearest_of_those_at_the_hand() {
         });
     for swaps in [false, true] {
         let seen = begin(hand, swaps);
-        let struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
-        assert_eq!(struck, [if swaps { 1 } else { 5 }]);
+        assert_eq!(seen.struck(), [if swaps { 1 } else { 5 }]);
     }
 }

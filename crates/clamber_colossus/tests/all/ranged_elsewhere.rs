@@ -1,12 +1,10 @@
 //! Attacks from afar in the cases that `ranged` leaves out: other rates and sizes, moving and steep ground, clips with
 //! other markers, riders, no prey, and saves in the middle of an attack.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::attacks::{before, before_at};
 use crate::carried::{Deck, plate};
-use crate::ranged::{Seen, act, attack, attack_among, places, somebody, wall};
-use crate::support::TICK;
+use crate::ranged::{act, attack, attack_among, on_ground, places, somebody, wall};
+use crate::support::{TICK, with_people};
 use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Person, Riding, Surroundings};
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
 use clamber_surface::mesh::TriangleId;
@@ -40,17 +38,8 @@ fn all_ways() -> [(&'static str, &'static str, Value); 3] {
     ]
 }
 
-fn waves(seen: &Seen) -> Vec<(usize, DVec3)> {
-    let all = seen.events.iter().filter_map(|(tick, event)| match event {
-        CreatureEvent::Wave { place, .. } => Some((*tick, *place)),
-        _ => None,
-    });
-    all.collect()
-}
-
 #[test]
 fn riders_are_spared() {
-    let ground = HalfSpace::below(0.0);
     for (state, way, file) in all_ways() {
         let giant = before(&act(state, json!({ way: file })));
         let at = Riding {
@@ -67,15 +56,13 @@ fn riders_are_spared() {
             };
             vec![rider, other]
         };
-        let seen = attack(&giant, people, |_| vec![&ground]);
-        let struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
-        assert_eq!(struck, [2], "{way}");
+        let seen = on_ground(&giant, people);
+        assert_eq!(seen.struck(), [2], "{way}");
     }
 }
 
 #[test]
 fn other_rates_strike_the_same_people() {
-    let ground = HalfSpace::below(0.0);
     for (state, way, file) in all_ways() {
         let told = [30.0, 60.0, 144.0].map(|rate| {
             let act = act(state, json!({ way: file.clone() }));
@@ -91,10 +78,10 @@ fn other_rates_strike_the_same_people() {
                 });
                 all.collect()
             };
-            let seen = attack(&giant, people, |_| vec![&ground]);
-            let mut blows: Vec<_> = seen.blows;
+            let seen = on_ground(&giant, people);
+            let struck = seen.struck();
+            let mut blows = seen.blows;
             blows.sort_by_key(|(_, blow)| blow.person);
-            let struck: Vec<u64> = blows.iter().map(|(_, blow)| blow.person).collect();
             let when: Vec<f64> = blows.iter().map(|(tick, _)| *tick as f64 / rate).collect();
             (struck, when)
         });
@@ -123,10 +110,7 @@ fn a_beam_that_turns_strikes_all_it_passes() {
         // behind it.
         let people = |time: f64| {
             let aside = ((time - 1.6).max(0.0) * 40.0).min(24.0);
-            let prey = Person {
-                id: 1000,
-                ..somebody(1000, DVec3::new(-12.0 + aside, 9.0, 24.0))
-            };
+            let prey = somebody(1000, DVec3::new(-12.0 + aside, 9.0, 24.0));
             let all = (0..200u32).map(|id| {
                 let angle = (f64::from(id) - 100.0) * 0.01;
                 let way = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * 70.0;
@@ -138,8 +122,7 @@ fn a_beam_that_turns_strikes_all_it_passes() {
             all.chain([prey]).collect()
         };
         let seen = attack(&giant, people, |_| Vec::new());
-        let mut struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
-        struck.sort_unstable();
+        let mut struck = seen.struck();
         struck.retain(|id| *id < 1000);
         let (first, last) = (struck[0], struck[struck.len() - 1]);
         assert!(last - first > 60, "{rate} Hz: {first} to {last}");
@@ -166,7 +149,7 @@ fn waves_begin_on_the_ground_at_every_size_and_on_slopes() {
                 let what = format!("{state} at {scale} on {degrees} degrees");
                 let begins = |people: &dyn Fn(f64) -> Vec<Person>| {
                     let seen = attack(&giant, people, |_| vec![&ground]);
-                    let waves = waves(&seen);
+                    let waves = seen.waves();
                     assert_eq!(waves.len(), 1, "{what}");
                     (waves[0].1, seen.blows.len())
                 };
@@ -211,7 +194,6 @@ fn waves_begin_on_the_ground_at_every_size_and_on_slopes() {
 /// `recovery`.
 #[test]
 fn waves_go_out_at_their_marker() {
-    let ground = HalfSpace::below(0.0);
     for (state, seconds) in [
         ("stomp_right", 1.84),
         ("kick_right", 3.4),
@@ -219,8 +201,8 @@ fn waves_go_out_at_their_marker() {
     ] {
         let wave = json!({ "radius": 9.0, "damage": 0.5, "throw": 5.0 });
         let giant = before(&act(state, json!({ "wave": wave })));
-        let seen = attack(&giant, |_| Vec::new(), |_| vec![&ground]);
-        let waves = waves(&seen);
+        let seen = on_ground(&giant, |_| Vec::new());
+        let waves = seen.waves();
         assert_eq!(waves.len(), 1, "{state}");
         let time = waves[0].0 as f64 * TICK;
         assert!((time - seconds).abs() < 0.06, "{state}: {time} s");
@@ -234,15 +216,8 @@ fn without_prey_it_throws_ahead() {
     let ground = HalfSpace::below(0.0);
     let shot = json!({ "speed": 60.0, "radius": 0.5, "gravity": 0.0, "damage": 0.5, "throw": 5.0 });
     let giant = before(&act("swipe_right", json!({ "shot": shot, "follows": 2.0 })));
-    let burst = |seen: &Seen| {
-        let burst = seen.events.iter().find_map(|(_, event)| match event {
-            CreatureEvent::Burst { place, .. } => Some(*place),
-            _ => None,
-        });
-        burst.unwrap()
-    };
     let ahead = DVec3::Z * giant.height();
-    let alone = burst(&attack(&giant, |_| Vec::new(), |_| vec![&ground]));
+    let alone = on_ground(&giant, |_| Vec::new()).burst().unwrap();
     assert!(alone.distance(ahead) < 0.01, "{alone} {ahead}");
     // A person that was seen, and is behind the giant now, is not a target.
     let mut later = giant.clone();
@@ -254,11 +229,8 @@ fn without_prey_it_throws_ahead() {
             &[&ground],
         );
     }
-    let behind = burst(&attack(
-        &later,
-        |_| vec![somebody(1, DVec3::new(3.0, 0.0, -30.0))],
-        |_| vec![&ground],
-    ));
+    let people = |_| vec![somebody(1, DVec3::new(3.0, 0.0, -30.0))];
+    let behind = on_ground(&later, people).burst().unwrap();
     assert!(behind.distance(ahead) < 0.01, "{behind} {ahead}");
     // The giant is put elsewhere in the wind-up of its attack.
     let mut put = giant.clone();
@@ -281,12 +253,11 @@ fn without_prey_it_throws_ahead() {
 }
 
 fn step(giant: &mut Creature, people: &[Person], terrain: &[&dyn Obstacle]) -> Vec<CreatureEvent> {
-    let around = Surroundings {
-        terrain,
-        people,
-        ..Surroundings::default()
-    };
-    giant.step(&around).unwrap().events.clone()
+    giant
+        .step(&with_people(terrain, people))
+        .unwrap()
+        .events
+        .clone()
 }
 
 /// On a ship that sails and turns, the waves of limbs and the aimed places move with the deck. Shots and the waves of
@@ -356,12 +327,10 @@ fn an_attack_is_saved_at_any_time() {
         [somebody(1, DVec3::new(8.0 * libm::sin(angle), 0.0, 26.0))]
     };
     let around = |people: &[Person], giant: &mut Creature| {
-        let around = Surroundings {
-            terrain: &[&ground],
-            people,
-            ..Surroundings::default()
-        };
-        giant.step(&around).unwrap().clone()
+        giant
+            .step(&with_people(&[&ground], people))
+            .unwrap()
+            .clone()
     };
     let mut ways = [0; 3];
     for tick in 0..330u32 {
@@ -426,8 +395,7 @@ fn waves_pass_other_creatures() {
     let seen = attack_among(&giant, people, |_| {
         [vec![&ground as &dyn Obstacle], vec![&skin]]
     });
-    let struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
-    assert_eq!(struck, [1]);
+    assert_eq!(seen.struck(), [1]);
 }
 
 /// A limb, its wave and its beam strike a person once in each attack, also in several stomps with overlapping waves.
@@ -456,12 +424,7 @@ fn limb_wave_and_beam_strike_once_in_each_attack() {
         .collect();
     let (mut begun, mut blows) = (0u32, Vec::new());
     for _ in 0..4_000 {
-        let around = Surroundings {
-            terrain: &[&ground],
-            people: &people,
-            ..Surroundings::default()
-        };
-        let report = giant.step(&around).unwrap();
+        let report = giant.step(&with_people(&[&ground], &people)).unwrap();
         let is_wave = |event: &&CreatureEvent| matches!(event, CreatureEvent::Wave { .. });
         begun += report.events.iter().filter(is_wave).count() as u32;
         blows.extend(report.blows.iter().map(|blow| (blow.person, blow.damage)));
@@ -479,7 +442,6 @@ fn limb_wave_and_beam_strike_once_in_each_attack() {
 /// A wave that has already left spares a person that the beam of the same attack strikes.
 #[test]
 fn a_wave_spares_whom_the_beam_strikes_after_it_left() {
-    let ground = HalfSpace::below(0.0);
     let stomp = act(
         "stomp_right",
         json!({
@@ -500,7 +462,7 @@ fn a_wave_spares_whom_the_beam_strikes_after_it_left() {
             };
             vec![somebody(1, place), somebody(2, place + away)]
         };
-        let seen = attack(&giant, people, |_| vec![&ground]);
+        let seen = on_ground(&giant, people);
         for id in [1, 2] {
             let blows = seen.blows.iter().filter(|(_, blow)| blow.person == id);
             let blows = blows.count();
@@ -515,16 +477,13 @@ fn a_wave_spares_whom_the_beam_strikes_after_it_left() {
 /// A part of an attack with neither damage nor throw does not keep the other parts from striking a person.
 #[test]
 fn what_has_neither_damage_nor_throw_spares_nobody() {
-    let ground = HalfSpace::below(0.0);
     let wave = json!({ "radius": 5.0, "damage": 0.5, "throw": 5.0 });
     let shell = json!({ "speed": 30.0, "radius": 0.0, "damage": 0.0, "throw": 0.0, "wave": wave });
     let giant = before(&act("swipe_right", json!({ "shot": shell })));
     for at in [DVec3::new(2.0, 0.0, 20.0), DVec3::new(-8.0, 0.0, 26.0)] {
         let people = |_| vec![somebody(1, at), somebody(2, at + DVec3::X)];
-        let seen = attack(&giant, people, |_| vec![&ground]);
-        let mut struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
-        struck.sort_unstable();
-        assert_eq!(struck, [1, 2]);
+        let seen = on_ground(&giant, people);
+        assert_eq!(seen.struck(), [1, 2]);
         let harm = seen.blows.iter().all(|(_, blow)| blow.damage > 0.1);
         assert!(harm, "{:?}", seen.blows);
         // The wave also strikes a person that only stands near the burst on the ground.
@@ -532,7 +491,7 @@ fn what_has_neither_damage_nor_throw_spares_nobody() {
             let ran = if time > 0.3 { 2.0 } else { 0.0 };
             vec![somebody(1, at + DVec3::X * ran)]
         };
-        let seen = attack(&giant, people, |_| vec![&ground]);
+        let seen = on_ground(&giant, people);
         assert_eq!(seen.blows.len(), 1);
         assert!(seen.blows[0].1.damage < 0.4, "{:?}", seen.blows);
     }
@@ -545,7 +504,7 @@ fn what_has_neither_damage_nor_throw_spares_nobody() {
     act["attack"]["damage"] = 0.5.into();
     let giant = before(&act);
     let under = crate::attacks::spot(&giant, &act).with_y(0.0);
-    let seen = attack(&giant, |_| vec![somebody(1, under)], |_| vec![&ground]);
+    let seen = on_ground(&giant, |_| vec![somebody(1, under)]);
     assert_eq!(seen.blows.len(), 1);
 }
 
@@ -577,7 +536,7 @@ fn waves_begin_on_slabs_and_below_bridges() {
                 vec![floor as &dyn Obstacle, &bridge]
             },
         );
-        let place = waves(&seen)[0].1;
+        let place = seen.waves()[0].1;
         let height = place.y - rise;
         assert!((height - 0.5).abs() < 1e-3, "{state} at {rise}: {height}");
     }
@@ -603,8 +562,7 @@ fn low_waves_strike_who_stands_on_edges_and_slopes() {
         ]
     };
     let seen = attack(&giant, people, |_| vec![&table as &dyn Obstacle, &ground]);
-    let struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
-    assert_eq!(struck, [1]);
+    assert_eq!(seen.struck(), [1]);
 }
 
 /// A sheet stops a stone, however fast the sheet moves towards it and at any rate: no stone is ever behind the sheet.

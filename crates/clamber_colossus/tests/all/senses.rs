@@ -1,29 +1,25 @@
 //! The giant's senses: the events that it notices, and how soon. Scenes B41 and B42.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::support;
 
 use std::sync::Arc;
 
-use crate::support::{TICK, brain_file, creature, ground, kind};
+use crate::support::{
+    TICK, add_block, brain_file, creature, ground, kind, level_ground, on_terrain, terrain_of,
+    with_noises, with_people,
+};
 use clamber_colossus::{
     Creature, CreatureConfig, CreatureEvent, CreatureKind, Noise, Person, Riding, Sense,
     Surroundings, Wound,
 };
 use clamber_surface::mesh::TriangleId;
-use clamber_world::rapier3d::prelude::{ColliderBuilder, Pose};
-use clamber_world::{BodyPoses, HalfSpace, MaterialPoint, Obstacle, RapierTerrain, WorldCapsule};
+use clamber_world::{MaterialPoint, Obstacle};
 use glam::DVec3;
 
 fn person(at: DVec3, riding: Option<Riding>) -> Person {
     Person {
-        id: 1,
-        body: WorldCapsule {
-            ends: [at + DVec3::Y * 0.3, at + DVec3::Y * 1.45],
-            radius: 0.3,
-        },
         riding,
+        ..support::person(at)
     }
 }
 
@@ -38,48 +34,41 @@ fn skin_of(kind: &CreatureKind, joint: &str) -> MaterialPoint {
     MaterialPoint::on_triangle(triangle.unwrap(), [1.0 / 3.0; 3])
 }
 
+/// Where a person stands on the chest.
+fn on_chest(kind: &CreatureKind) -> Riding {
+    Riding {
+        at: skin_of(kind, "chest"),
+        hangs: false,
+    }
+}
+
 /// The states that are entered within some seconds: the time of each, seconds, and its path.
 fn entered(giant: &mut Creature, around: &Surroundings<'_>, seconds: f64) -> Vec<(f64, String)> {
     let mut found = Vec::new();
     for tick in 0..(seconds / TICK) as usize {
-        let report = giant.step(around).unwrap();
-        let states: Vec<_> = report
-            .events
-            .iter()
-            .filter_map(|event| match event {
-                CreatureEvent::Entered { to, .. } => Some(*to),
-                _ => None,
-            })
-            .collect();
-        for state in states {
-            found.push((
-                tick as f64 * TICK,
-                giant.kind().brain().path(state).to_owned(),
-            ));
+        for event in giant.step(around).unwrap().events.clone() {
+            if let CreatureEvent::Entered { to, .. } = event {
+                let path = giant.kind().brain().path(to).to_owned();
+                found.push((tick as f64 * TICK, path));
+            }
         }
     }
     found
 }
 
 fn alone(kind: &Arc<CreatureKind>, seed: u64) -> Creature {
-    creature(
-        kind,
-        CreatureConfig {
-            seed,
-            ..CreatureConfig::default()
-        },
-    )
+    let config = CreatureConfig {
+        seed,
+        ..CreatureConfig::default()
+    };
+    creature(kind, config)
 }
 
 #[test]
 fn an_arrow_alarms_it_within_half_a_second() {
     let kind = kind(&brain_file());
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
-    let around = Surroundings {
-        terrain: &terrain,
-        ..Surroundings::default()
-    };
+    let terrain = level_ground();
+    let around = on_terrain(&terrain);
     let mut giant = alone(&kind, 1);
     entered(&mut giant, &around, 2.0);
     let wound = Wound {
@@ -111,19 +100,12 @@ fn what_terrain_hides_is_not_seen() {
     for hidden in [false, true] {
         let mut world = ground(|_, _| 0.0);
         if hidden {
-            let wall = ColliderBuilder::cuboid(40.0, 40.0, 1.0);
-            let place = DVec3::new(0.0, 0.0, 40.0).as_vec3();
-            world.insert_collider(wall.position(Pose::from_translation(place)), None);
-            world.detect_collisions(&(), &());
+            let half = DVec3::new(40.0, 40.0, 1.0);
+            add_block(&mut world, DVec3::Z * 40.0, half);
         }
-        let poses = BodyPoses::default();
-        let terrain = RapierTerrain::of_world(&world, &poses);
+        let terrain = terrain_of(&world);
         let terrain: [&dyn Obstacle; 1] = [&terrain];
-        let around = Surroundings {
-            terrain: &terrain,
-            people: &people,
-            ..Surroundings::default()
-        };
+        let around = with_people(&terrain, &people);
         let mut giant = alone(&kind, 1);
         entered(&mut giant, &around, 0.2);
         assert_eq!(
@@ -136,18 +118,10 @@ fn what_terrain_hides_is_not_seen() {
 #[test]
 fn a_rider_is_noticed_and_shaken_with_rests() {
     let kind = kind(&brain_file());
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
-    let riding = Riding {
-        at: skin_of(&kind, "chest"),
-        hangs: false,
-    };
+    let terrain = level_ground();
+    let riding = on_chest(&kind);
     let people = [person(DVec3::Y * 30.0, Some(riding))];
-    let around = Surroundings {
-        terrain: &terrain,
-        people: &people,
-        ..Surroundings::default()
-    };
+    let around = with_people(&terrain, &people);
     let shakes = ["shrug", "shake", "rage", "rub_left", "rub_right"];
     let is_shake = |name: &str| {
         let name = name.rsplit('/').next().unwrap();
@@ -192,20 +166,14 @@ fn a_rider_is_noticed_and_shaken_with_rests() {
 fn noises_fall_off_with_distance() {
     let states = r#"{ "waits": {} }"#;
     let kind = support::kind(&support::brain_with("waits", states));
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     let heard = |hearing: f64, noises: &[Noise]| {
         let config = CreatureConfig {
             hearing,
             ..CreatureConfig::default()
         };
         let mut giant = support::creature(&kind, config);
-        let around = Surroundings {
-            terrain: &terrain,
-            noises,
-            ..Surroundings::default()
-        };
-        giant.step(&around).unwrap();
+        giant.step(&with_noises(&terrain, noises)).unwrap();
         giant.state().senses().get(Sense::Noise)
     };
     let eye = support::creature(&kind, CreatureConfig::default());
@@ -228,38 +196,24 @@ fn noises_fall_off_with_distance() {
     };
     let found = heard(50.0, &[far, at(20.0)]);
     assert_eq!(found, 2.0);
-    assert_eq!(
-        heard(
-            50.0,
-            &[Noise {
-                place: DVec3::NAN,
-                loudness: 9.0
-            }]
-        ),
-        0.0
-    );
+    let nowhere = Noise {
+        place: DVec3::NAN,
+        loudness: 9.0,
+    };
+    assert_eq!(heard(50.0, &[nowhere]), 0.0);
 }
 
 /// A person that leaves or dies stops being a rider at once. A rider that hops stays one.
 #[test]
 fn who_is_gone_rides_no_longer() {
     let kind = kind(&brain_file());
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
-    let riding = Riding {
-        at: skin_of(&kind, "chest"),
-        hangs: false,
-    };
+    let terrain = level_ground();
+    let riding = on_chest(&kind);
     let at = DVec3::Y * 30.0;
     for (after, riders) in [(vec![], 0.0), (vec![person(at, None)], 1.0)] {
         let mut giant = alone(&kind, 1);
         let mut step = |people: &[Person]| {
-            let around = Surroundings {
-                terrain: &terrain,
-                people,
-                ..Surroundings::default()
-            };
-            giant.step(&around).unwrap();
+            giant.step(&with_people(&terrain, people)).unwrap();
             let senses = giant.state().senses();
             [senses.get(Sense::Riders), senses.get(Sense::RiderSeconds)]
         };

@@ -1,19 +1,16 @@
 //! Sizes come from the skin posed at rest, and times from the size, for any unit of length in a file.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::support;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::support::{TICK, brain_file, brain_with, person};
-use clamber_colossus::{Creature, CreatureConfig, CreatureKind, Noise, Surroundings};
+use crate::support::{TICK, brain_file, brain_with, level_ground, noise, person, with_noises};
+use clamber_colossus::{Creature, CreatureConfig, CreatureKind, Surroundings};
 use clamber_gltf::{LoadOptions, load_with};
 use clamber_surface::measure::skin_vertex_reference;
 use clamber_surface::mesh::Rig;
 use clamber_surface::mesh::VertexId;
-use clamber_world::{HalfSpace, Obstacle};
 use glam::DVec3;
 
 /// The giant, and the models of the test data that load.
@@ -158,8 +155,7 @@ fn the_unit_of_a_file_does_not_matter() {
                 Creature::new(Arc::clone(kind), config).unwrap()
             })
             .collect();
-        let ground = HalfSpace::below(0.0);
-        let terrain: [&dyn Obstacle; 1] = [&ground];
+        let terrain = level_ground();
         for tick in 0..(120.0 / TICK) as u32 {
             let second = f64::from(tick) * TICK;
             // A person runs about in front of the creatures.
@@ -211,22 +207,14 @@ fn half_turn(height: f64, turn_deg: f64, within_deg: f64, made_for: f64) -> f64 
     file["body"]["made_for"] = made_for.into();
     let kind = support::kind(&file.to_string());
     let mut creature = Creature::new(Arc::clone(&kind), CreatureConfig::default()).unwrap();
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     let behind = DVec3::new(0.01, 0.0, -3.0) * height;
     let ends = kind.brain().find("ends").unwrap();
     for tick in 0..(40.0 * height.sqrt() / TICK) as u32 {
-        let noise = Noise {
-            place: behind,
-            loudness: 5.0,
-        };
-        let noises = [noise];
-        let around = Surroundings {
-            terrain: &terrain,
-            noises: &noises[..usize::from(tick == 30)],
-            ..Surroundings::default()
-        };
-        creature.step(&around).unwrap();
+        let noises = [noise(behind)];
+        creature
+            .step(&with_noises(&terrain, &noises[..usize::from(tick == 30)]))
+            .unwrap();
         if creature.state().current() == ends {
             let way = behind - creature.state().position();
             let ahead = libm::atan2(way.x, way.z) - creature.state().yaw();

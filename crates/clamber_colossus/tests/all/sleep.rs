@@ -1,21 +1,13 @@
 //! A creature that falls asleep stops where it is, and continues when it wakes.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
-use crate::support::{brain_with, creature, kind};
-use clamber_colossus::{Creature, CreatureConfig, Surroundings};
-use clamber_world::{HalfSpace, Obstacle};
+use crate::support::{brain_with, creature, kind, level_ground, on_terrain};
+use clamber_colossus::{Creature, CreatureConfig};
 
 /// Steps a creature for some ticks. Returns the times of the layers of its clips.
 fn live(one: &mut Creature, ticks: u32) -> Vec<f64> {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     for _ in 0..ticks {
-        let around = Surroundings {
-            terrain: &terrain,
-            ..Surroundings::default()
-        };
-        one.step(&around).unwrap();
+        one.step(&on_terrain(&terrain)).unwrap();
     }
     let layers = one.state().animator().layers().iter();
     layers.map(|layer| layer.time).collect()

@@ -1,19 +1,15 @@
 //! Places that a creature can walk into but not turn in: blind alleys, narrow lanes, and boulders all around.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::sync::Arc;
 
 use clamber_animation::rig::Palette;
-use clamber_colossus::{
-    Creature, CreatureConfig, CreatureEvent, CreatureKind, Foresight, Surroundings,
-};
+use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, CreatureKind, Foresight};
+use clamber_world::Obstacle;
 use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
-use clamber_world::{BodyPoses, Obstacle, RapierTerrain};
 use glam::{DVec3, Vec3};
 
 use crate::animals::{animals, kind as animal};
-use crate::support::{TICK, creature, ground};
+use crate::support::{TICK, add_block, creature, ground, on_terrain, terrain_of};
 use crate::walls::{creatures, reach};
 
 /// The end of an errand, with its time, seconds.
@@ -66,10 +62,7 @@ impl<'a> Errands<'a> {
     fn go(&mut self, to: DVec3, most: f64) -> End {
         assert!(self.one.send(Some(to)));
         let terrain = [self.terrain];
-        let around = Surroundings {
-            terrain: &terrain,
-            ..Surroundings::default()
-        };
+        let around = on_terrain(&terrain);
         let (mut still, mut foreseen) = (0.0, Vec::new());
         let mut skin: Vec<Vec3> = Vec::new();
         for tick in 0..(most / TICK) as u32 {
@@ -118,17 +111,10 @@ impl<'a> Errands<'a> {
     }
 }
 
-/// Adds a box with its centre at `at` and these half extents.
-fn put_wall(world: &mut PhysicsWorld, at: DVec3, half: DVec3) {
-    let [x, y, z] = half.as_vec3().to_array();
-    let wall = ColliderBuilder::cuboid(x, y, z).position(Pose::from_translation(at.as_vec3()));
-    world.insert_collider(wall, None);
-}
-
 /// An alley of two parallel walls, half as high as the creature, with a third wall at its end.
 fn alley(half: f64, long: f64, height: f64) -> PhysicsWorld {
     let mut world = ground(|_, _| 0.0);
-    let mut wall = |at: DVec3, half: DVec3| put_wall(&mut world, at, half);
+    let mut wall = |at: DVec3, half: DVec3| add_block(&mut world, at, half);
     let (high, thick) = (0.25 * height, 0.1 * height);
     for side in [-1.0, 1.0] {
         let at = DVec3::new(side * (half + thick), high, 0.5 * long);
@@ -136,7 +122,6 @@ fn alley(half: f64, long: f64, height: f64) -> PhysicsWorld {
     }
     let at = DVec3::new(0.0, high, long + thick);
     wall(at, DVec3::new(half + 2.0 * thick, high, thick));
-    world.detect_collisions(&(), &());
     world
 }
 
@@ -164,8 +149,7 @@ fn who_walked_into_a_blind_alley_comes_out_again() {
         for share in [0.5, 0.75, 1.0] {
             let (half, long) = (share * reach, 2.0 * reach + height);
             let world = alley(half, long, height);
-            let poses = BodyPoses::default();
-            let terrain = RapierTerrain::of_world(&world, &poses);
+            let terrain = terrain_of(&world);
             let outside = DVec3::new(0.0, 0.0, -2.0 * reach);
             let config = CreatureConfig {
                 position: outside,
@@ -220,15 +204,10 @@ fn lanes_in_which_it_cannot_turn_do_not_keep_it_for_ever() {
             // Four blocks around a crossing.
             for (x, z) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
                 let at = DVec3::new(x, 0.0, z) * (half + 0.5 * long) + DVec3::Y * 0.25 * height;
-                put_wall(
-                    &mut world,
-                    at,
-                    DVec3::new(0.5 * long, 0.25 * height, 0.5 * long),
-                );
+                let size = DVec3::new(0.5 * long, 0.25 * height, 0.5 * long);
+                add_block(&mut world, at, size);
             }
-            world.detect_collisions(&(), &());
-            let poses = BodyPoses::default();
-            let terrain = RapierTerrain::of_world(&world, &poses);
+            let terrain = terrain_of(&world);
             let config = CreatureConfig {
                 position: DVec3::new(0.0, 0.0, -2.0 * reach),
                 ..CreatureConfig::default()
@@ -261,8 +240,7 @@ fn boulders_all_around_are_no_trap() {
                 world.insert_collider(ColliderBuilder::ball(radius as f32).position(place), None);
             }
             world.detect_collisions(&(), &());
-            let poses = BodyPoses::default();
-            let terrain = RapierTerrain::of_world(&world, &poses);
+            let terrain = terrain_of(&world);
             let mut errands = Errands::of(creature(&kind, CreatureConfig::default()), &terrain);
             for _ in 0..6 {
                 let to = DVec3::new(lot(-4.0, 4.0), 0.0, lot(-4.0, 4.0));

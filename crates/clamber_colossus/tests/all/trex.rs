@@ -1,30 +1,18 @@
 //! A third-party creature lives at 20 m by a brain of some fifty lines.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::support::{TICK, person};
-use clamber_colossus::{
-    Brain, Creature, CreatureConfig, CreatureKind, Person, Riding, Surroundings,
-};
+use crate::support::{TICK, level_ground, person, rider, test_rig, with_people};
+use clamber_colossus::{Brain, Creature, CreatureConfig, CreatureKind, Person};
 use clamber_surface::mesh::TriangleId;
-use clamber_world::{HalfSpace, MaterialPoint, Obstacle};
 use glam::DVec3;
 
 /// Height to which the Trex is scaled, metres.
 const HEIGHT: f64 = 20.0;
 
 fn kind() -> Option<Arc<CreatureKind>> {
-    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
-        eprintln!("SKIPPED trex: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
-        return None;
-    };
-    let rig = clamber_gltf::load(PathBuf::from(root).join("models/Trex.glb"))
-        .unwrap()
-        .rig;
+    let rig = test_rig("Trex.glb")?;
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/trex.brain.json");
     let text = std::fs::read_to_string(path).unwrap();
     assert!(text.lines().count() <= 60);
@@ -42,18 +30,12 @@ fn it_strolls_hunts_bites_and_shakes_its_rider() {
         ..CreatureConfig::default()
     };
     let mut trex = Creature::new(Arc::clone(&kind), config).unwrap();
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let terrain = level_ground();
     let mut seen = BTreeSet::new();
     let mut far = 0f64;
     let mut live = |trex: &mut Creature, people: &[Person], seconds: f64| {
         for _ in 0..(seconds / TICK) as u32 {
-            let around = Surroundings {
-                terrain: &terrain,
-                people,
-                ..Surroundings::default()
-            };
-            trex.step(&around).unwrap();
+            trex.step(&with_people(&terrain, people)).unwrap();
             let state = trex.state();
             assert!(state.position().is_finite() && state.position().y.abs() < 1.0);
             far = far.max(state.position().length());
@@ -67,13 +49,7 @@ fn it_strolls_hunts_bites_and_shakes_its_rider() {
     let prey = trex.state().position() + ahead * 45.0;
     live(&mut trex, &[person(prey)], 60.0);
     let reached = trex.state().position().distance(prey);
-    let rider = Person {
-        riding: Some(Riding {
-            at: MaterialPoint::on_triangle(TriangleId(0), [1.0 / 3.0; 3]),
-            hangs: false,
-        }),
-        ..person(trex.state().position() + DVec3::Y * HEIGHT)
-    };
+    let rider = rider(trex.state().position() + DVec3::Y * HEIGHT, TriangleId(0));
     live(&mut trex, &[rider], 10.0);
     for state in [
         "calm/idle",

@@ -1,17 +1,15 @@
 //! A brain or a game that changes its decision in each tick.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use core::f64::consts::{PI, TAU};
 
 use clamber_animation::rig::Palette;
 use clamber_colossus::{Creature, CreatureEvent, Foresight};
-use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
-use clamber_world::{BodyPoses, HalfSpace, Obstacle, RapierTerrain};
+use clamber_world::rapier3d::prelude::PhysicsWorld;
+use clamber_world::{HalfSpace, Obstacle};
 use glam::{DVec3, Vec3};
 
 use crate::support::life::{Guest, Life, SETTINGS, at};
-use crate::support::{all_cases, brain_with, ground};
+use crate::support::{add_block, all_cases, brain_with, ground, terrain_of};
 
 /// The states between which the tests switch, as JSON.
 const STATES: &str = r#"{
@@ -106,14 +104,6 @@ pub(crate) fn pen(scale: f64) -> PhysicsWorld {
     world
 }
 
-/// Adds a block of rock with its centre at `at` and the half extents `size`.
-fn add_block(world: &mut PhysicsWorld, at: DVec3, size: DVec3) {
-    let [x, y, z] = size.as_vec3().to_array();
-    let block = ColliderBuilder::cuboid(x, y, z);
-    world.insert_collider(block.position(Pose::from_translation(at.as_vec3())), None);
-    world.detect_collisions(&(), &());
-}
-
 /// The number of states that the giant enters in 20 s.
 fn entered(life: &mut Life<'_>, people: &[Guest]) -> usize {
     let mut entered = 0;
@@ -136,10 +126,9 @@ fn who_cannot_turn_tries_for_a_while() {
             { "to": "hunt", "when": ["END"] }
         ] }
     }"#;
-    let poses = BodyPoses::default();
     for setting in SETTINGS {
         let world = pen(setting.scale());
-        let terrain = RapierTerrain::of_world(&world, &poses);
+        let terrain = terrain_of(&world);
         let people = [at(-1.47, 60.0)];
         for end in ["done", "blocked"] {
             let brain = brain_with("hunt", &states.replace("END", end));
@@ -179,16 +168,12 @@ fn who_cannot_strike_tries_for_a_while() {
         "stomp": { "act": { "attack": { "clip": "stomp", "limb": ["foot.R", "toe.R"], "damage": 0.6, "throw": 9 } },
             "transitions": [{ "to": "hunt" }] }
     }"#;
-    let poses = BodyPoses::default();
     for setting in SETTINGS {
         let mut world = ground(|_, _| 0.0);
-        let [at_wall, size] = [DVec3::new(0.0, 6.0, 8.0), DVec3::new(40.0, 6.0, 2.0)];
-        add_block(
-            &mut world,
-            at_wall * setting.scale(),
-            size * setting.scale(),
-        );
-        let terrain = RapierTerrain::of_world(&world, &poses);
+        let wall = [DVec3::new(0.0, 6.0, 8.0), DVec3::new(40.0, 6.0, 2.0)];
+        let [at_wall, half] = wall.map(|one| one * setting.scale());
+        add_block(&mut world, at_wall, half);
+        let terrain = terrain_of(&world);
         let mut life = Life::new(setting, &brain_with("hunt", states), &terrain);
         let entered = entered(&mut life, &[at(0.0, 40.0)]);
         assert!((10..=42).contains(&entered), "{setting:?}: {entered}");
@@ -199,10 +184,9 @@ fn who_cannot_strike_tries_for_a_while() {
 /// A game sends the giant again whenever it reports that it cannot get there.
 #[test]
 fn who_is_sent_again_and_again_tries_for_a_while() {
-    let poses = BodyPoses::default();
     for setting in SETTINGS {
         let world = pen(setting.scale());
-        let terrain = RapierTerrain::of_world(&world, &poses);
+        let terrain = terrain_of(&world);
         let mut life = Life::new(setting, &brain_with("stands", STATES), &terrain);
         let mut stopped = 0;
         for _ in 0..setting.ticks(20.0) {
@@ -270,16 +254,12 @@ fn feet_come_under_the_body_after_a_turn_without_a_clip() {
 /// A foot beyond the edge of a cliff hangs in the air, and does not come down again and again.
 #[test]
 fn a_foot_over_nothing_stays_where_it_is() {
-    let poses = BodyPoses::default();
     for setting in SETTINGS {
         let mut world = PhysicsWorld::default();
-        let [at_rock, size] = [DVec3::new(-30.0, -1.0, 0.0), DVec3::new(30.0, 1.0, 60.0)];
-        add_block(
-            &mut world,
-            at_rock * setting.scale(),
-            size * setting.scale(),
-        );
-        let terrain = RapierTerrain::of_world(&world, &poses);
+        let rock = [DVec3::new(-30.0, -1.0, 0.0), DVec3::new(30.0, 1.0, 60.0)];
+        let [at_rock, half] = rock.map(|one| one * setting.scale());
+        add_block(&mut world, at_rock, half);
+        let terrain = terrain_of(&world);
         let mut life = Life::new(setting, &brain_with("stands", STATES), &terrain);
         let mut planted = 0;
         for tick in 0..setting.ticks(20.0) {

@@ -1,17 +1,18 @@
 //! Walls in a creature's way: it stops at them, goes round them, and neither turns nor strikes into them.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::sync::Arc;
 
-use clamber_colossus::{Creature, CreatureConfig, CreatureKind, Noise, Sense, Surroundings};
+use clamber_colossus::{Creature, CreatureConfig, CreatureKind, Sense};
 use clamber_surface::geometry::rotation_from_axis_angle;
-use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
-use clamber_world::{BodyPoses, HalfSpace, Obstacle, RapierTerrain, TriangleTerrain};
+use clamber_world::rapier3d::prelude::PhysicsWorld;
+use clamber_world::{HalfSpace, Obstacle, TriangleTerrain};
 use glam::{DQuat, DVec3, Vec3};
 
 use crate::animals::{animals, kind as animal};
-use crate::support::{TICK, brain_with, kind as giant};
+use crate::attacks::attacks;
+use crate::support::{
+    TICK, add_block, brain_with, kind as giant, noise, on_terrain, terrain_of, with_noises,
+};
 
 /// States in which a creature turns to a noise and walks there, as JSON.
 pub(crate) const HUNTS: &str = r#"{
@@ -149,16 +150,13 @@ fn walk(
     let pace = height.sqrt();
     for tick in 0..(seconds * pace / TICK) as u32 {
         let time = f64::from(tick) * TICK / pace;
-        let noises = [Noise {
-            place: goal,
-            loudness: 5.0,
-        }];
-        let around = Surroundings {
-            terrain,
-            noises: &noises[..usize::from(walk.arrived.is_none())],
-            ..Surroundings::default()
-        };
-        creature.step(&around).unwrap();
+        let noises = [noise(goal)];
+        creature
+            .step(&with_noises(
+                terrain,
+                &noises[..usize::from(walk.arrived.is_none())],
+            ))
+            .unwrap();
         let state = creature.state();
         walk.high = (state.position().y / height).max(walk.high);
         if state.senses().get(Sense::Blocked) > 0.0 {
@@ -250,13 +248,9 @@ fn walls_of_other_makes_stop_it() {
     let away = reach(&kind, height) + 0.7 * height;
     let solid = HalfSpace::behind(DVec3::Z * away, DVec3::NEG_Z).unwrap();
     let mut world = PhysicsWorld::default();
-    let half = Vec3::new(300.0, height as f32, 5.0);
-    let place = Pose::from_translation(Vec3::new(0.0, 0.0, away as f32 + half.z));
-    let cuboid = ColliderBuilder::cuboid(half.x, half.y, half.z).position(place);
-    world.insert_collider(cuboid, None);
-    world.detect_collisions(&(), &());
-    let poses = BodyPoses::default();
-    let rock = RapierTerrain::of_world(&world, &poses);
+    let half = DVec3::new(300.0, height, 5.0);
+    add_block(&mut world, DVec3::Z * (away + half.z), half);
+    let rock = terrain_of(&world);
     for wall in [&solid as &dyn Obstacle, &rock] {
         let depth = |_, place: DVec3| place.z - away;
         let goal = DVec3::Z * (2.0 * away + 2.0 * height);
@@ -366,11 +360,9 @@ fn it_does_not_turn_into_walls() {
 /// An attack does not begin if its limb would go through a wall, and the brain is told. Without the wall it begins.
 #[test]
 fn blows_do_not_go_through_walls() {
-    let file: serde_json::Value = serde_json::from_str(&crate::support::brain_file()).unwrap();
-    let mut attacks = Vec::new();
-    collect(&file["states"], &mut attacks);
+    let attacks = attacks();
     let (mut walled, mut deepest) = (0, 0f64);
-    for attack in &attacks {
+    for (_, attack) in &attacks {
         let states = format!(
             r#"{{ "strikes": {{ "act": {attack}, "transitions": [{{ "to": "stands", "when": ["blocked"] }}] }}, "stands": {{ }} }}"#
         );
@@ -398,11 +390,7 @@ fn blows_do_not_go_through_walls() {
             let (mut began, mut blocked, mut own) = (false, false, 0f64);
             let mut heard = false;
             for tick in 0..400 {
-                let around = Surroundings {
-                    terrain,
-                    ..Surroundings::default()
-                };
-                giant.step(&around).unwrap();
+                giant.step(&on_terrain(terrain)).unwrap();
                 blocked |= giant.state().senses().get(Sense::Blocked) > 0.0;
                 began |= giant.attack().is_some();
                 let brain = giant.kind().brain();
@@ -430,17 +418,4 @@ fn blows_do_not_go_through_walls() {
         3 * attacks.len()
     );
     assert!(walled >= 8 && deepest < 0.02 * 41.0, "{walled}, {deepest}");
-}
-
-fn collect(states: &serde_json::Value, found: &mut Vec<String>) {
-    for state in states
-        .as_object()
-        .into_iter()
-        .flat_map(|states| states.values())
-    {
-        if state["act"]["attack"].is_object() {
-            found.push(state["act"].to_string());
-        }
-        collect(&state["states"], found);
-    }
 }

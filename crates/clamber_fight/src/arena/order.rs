@@ -278,7 +278,13 @@ impl Arena {
                 check(value.is_finite(), || {
                     format!("the sense `{name}` is not finite")
                 })?;
-                self.check_creature((*creature, joining), |one| check_sense(one, name))
+                self.check_creature((*creature, joining), |creature| {
+                    let senses = creature.kind().brain().own_senses();
+                    check(senses.contains(name), || {
+                        let known = listed(senses);
+                        format!("no own sense is called `{name}`; there are {known}")
+                    })
+                })
             }
             Order::Send { creature, to } => {
                 to.map_or(Ok(()), place)?;
@@ -289,7 +295,14 @@ impl Arena {
                 })
             }
             Order::Enter { creature, state } => {
-                self.check_creature((*creature, joining), |one| check_state(one, state))
+                self.check_creature((*creature, joining), |creature| {
+                    let brain = creature.kind().brain();
+                    check(brain.find(state).is_some(), || {
+                        let paths: Vec<&str> =
+                            brain.states().map(|state| brain.path(state)).collect();
+                        format!("no state is called `{state}`; there are {}", listed(&paths))
+                    })
+                })
             }
             Order::PlaceCreature { position, yaw, .. } => {
                 place(*position)?;
@@ -307,8 +320,11 @@ impl Arena {
                 check(is_damage, || {
                     format!("damage {damage} is negative, or not finite")
                 })?;
-                self.check_creature((*creature, joining), |one| {
-                    check_weak_point(one, *weak_point)
+                self.check_creature((*creature, joining), |creature| {
+                    let count = creature.kind().weak_points().len();
+                    check(*weak_point < count, || {
+                        format!("there is no weak point {weak_point}: there are {count}")
+                    })
                 })
             }
             Order::AddFighter { .. }
@@ -510,34 +526,6 @@ fn place(place: DVec3) -> Result<(), String> {
     let is_near = place.is_finite() && place.abs().max_element() <= FARTHEST_PLACE;
     check(is_near, || {
         format!("the place {place} is not finite, or beyond 1e12 m")
-    })
-}
-
-/// Refuses an own sense that a creature does not have.
-fn check_sense(creature: &Creature, name: &String) -> Result<(), String> {
-    let senses = creature.kind().brain().own_senses();
-    check(senses.contains(name), || {
-        format!(
-            "no own sense is called `{name}`; there are {}",
-            listed(senses)
-        )
-    })
-}
-
-/// Refuses a state that a creature's brain does not have.
-fn check_state(creature: &Creature, state: &str) -> Result<(), String> {
-    let brain = creature.kind().brain();
-    check(brain.find(state).is_some(), || {
-        let paths: Vec<&str> = brain.states().map(|state| brain.path(state)).collect();
-        format!("no state is called `{state}`; there are {}", listed(&paths))
-    })
-}
-
-/// Refuses a weak point that a creature does not have.
-fn check_weak_point(creature: &Creature, weak_point: usize) -> Result<(), String> {
-    let count = creature.kind().weak_points().len();
-    check(weak_point < count, || {
-        format!("there is no weak point {weak_point}: there are {count}")
     })
 }
 

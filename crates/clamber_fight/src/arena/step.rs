@@ -280,7 +280,9 @@ impl Arena {
         for index in 0..self.fighters.len() {
             obstacles.truncate(fixed);
             let ours = &self.fighters[index];
-            let player = input_of(&scratch.inputs, ours.id());
+            // A fighter that has just joined is idle.
+            let found = scratch.inputs.binary_search_by_key(&ours.id(), |one| one.0);
+            let player = found.map_or(ClimberInput::IDLE, |index| scratch.inputs[index].1);
             let id = fighter_obstacle(ours.id());
             let mut bodies = scratch.group.others(id).peekable();
             for other in self.fighters.iter() {
@@ -425,12 +427,6 @@ impl Arena {
             }
         }
     }
-}
-
-/// The input of a fighter; idle if it has just joined.
-fn input_of(inputs: &[(FighterId, ClimberInput)], fighter: FighterId) -> ClimberInput {
-    let found = inputs.binary_search_by_key(&fighter, |one| one.0);
-    found.map_or(ClimberInput::IDLE, |index| inputs[index].1)
 }
 
 /// A fighter as a creature senses it.

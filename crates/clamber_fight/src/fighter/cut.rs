@@ -70,7 +70,10 @@ impl SwordConfig {
         };
         for chord in chords([begin, end], parts) {
             for (creature, skin) in skins.iter() {
-                if !sweeps.is_near(skin, creature, chord, chord.map(blade)) {
+                // Only if the thickened blade may touch a part on the chord that is not yet struck.
+                let blades = chord.map(blade);
+                let near = sweeps.first(skin, creature, chord, blades, MOST_ARC_ERROR);
+                if near.is_none() {
                     continue;
                 }
                 for fine in chords(chord, FINE_CHORDS) {
@@ -97,18 +100,6 @@ struct Sweeps<'a> {
 }
 
 impl Sweeps<'_> {
-    /// True if the thickened blade may touch a part on a chord that is not yet struck.
-    fn is_near(
-        &self,
-        skin: &SkinnedSurface,
-        creature: CreatureId,
-        span: [f64; 2],
-        blades: [Blade; 2],
-    ) -> bool {
-        self.first(skin, creature, span, blades, MOST_ARC_ERROR)
-            .is_some()
-    }
-
     /// Records the contacts on a fine chord.
     fn strike(
         &mut self,

@@ -1,14 +1,12 @@
 //! A creature's shots and waves strike fighters of the arena, and are part of the saved state.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::sync::Arc;
 
-use crate::support::{GROUND, Slab, giant_with};
+use crate::orders::state;
+use crate::support::{Slab, arena_with, giant_with, level_ground};
 use clamber_climber::ClimberInput;
 use clamber_colossus::{CreatureConfig, CreatureEvent, CreatureKind};
 use clamber_fight::{Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId};
-use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec2, DVec3, Vec3};
 use serde_json::json;
 
@@ -36,10 +34,7 @@ fn thrower() -> Arc<CreatureKind> {
 
 /// An arena with the throwing giant and three fighters in front of it.
 fn arena() -> Arena {
-    let mut arena = Arena::new(ArenaConfig::default()).unwrap();
-    arena
-        .add_creature(thrower(), CreatureConfig::default())
-        .unwrap();
+    let mut arena = arena_with(thrower());
     add_fighters(&mut arena);
     arena
 }
@@ -57,8 +52,7 @@ fn add_fighters(arena: &mut Arena) {
 
 #[test]
 fn stones_and_waves_of_a_creature_strike_fighters() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = level_ground();
     let inputs = [ClimberInput::IDLE; 3];
     let mut ours = arena();
     let (mut struck, mut told, mut in_the_air) = (Vec::new(), Vec::new(), 0);
@@ -90,27 +84,14 @@ fn stones_and_waves_of_a_creature_strike_fighters() {
     assert!(of(1)[0] > 0.02 && of(1)[0] < 0.2, "{:?}", of(1));
     assert_eq!([of(0).len(), of(1).len(), of(2).len()], [2, 2, 1]);
     for number in 0..3 {
-        let left = ours
-            .fighter(FighterId(number))
-            .unwrap()
-            .climber()
-            .state()
-            .hit_points;
+        let left = state(&ours, FighterId(number)).hit_points;
         assert!(left < 1.0, "{number}: {left}");
     }
     let count = |is: fn(&CreatureEvent) -> bool| told.iter().filter(|event| is(event)).count();
-    assert_eq!(
-        count(|event| matches!(event, CreatureEvent::Threw { .. })),
-        1
-    );
-    assert_eq!(
-        count(|event| matches!(event, CreatureEvent::Burst { .. })),
-        1
-    );
-    assert_eq!(
-        count(|event| matches!(event, CreatureEvent::Wave { .. })),
-        2
-    );
+    let thrown = count(|event| matches!(event, CreatureEvent::Threw { .. }));
+    let bursts = count(|event| matches!(event, CreatureEvent::Burst { .. }));
+    let waves = count(|event| matches!(event, CreatureEvent::Wave { .. }));
+    assert_eq!([thrown, bursts, waves], [1, 1, 2]);
     assert!(in_the_air > 60, "{in_the_air}");
     // A fresh arena that is restored from any of the saved states ends in the same state.
     for (tick, bytes) in saved {
@@ -127,8 +108,7 @@ fn stones_and_waves_of_a_creature_strike_fighters() {
 /// restore, and whichever of the two creatures has the lower number.
 #[test]
 fn stones_meet_creatures_that_move_as_a_fresh_arena_has_it() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = level_ground();
     let inputs = [ClimberInput::IDLE; 3];
     let shield = || {
         // The shield moves up and down at 12 m/s.

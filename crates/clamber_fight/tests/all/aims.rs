@@ -1,7 +1,5 @@
 //! Aims at moving targets, compared with the exact quartic.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use clamber_fight::aim::lead;
 use dashu_int::IBig;
 use dashu_ratio::RBig;

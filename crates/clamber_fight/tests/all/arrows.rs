@@ -1,11 +1,9 @@
 //! Arrows in an arena: plates break, the oldest arrows fall, and numbers are the same after a restore. Scenes B32, B36
 //! and B57.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::support;
 
-use crate::support::{GIANT, GROUND, HERO, PLATE, Slab, land, pressing, step, weak_point};
+use crate::support::{GIANT, HERO, PLATE, Slab, land, low_ground, moves, pressing, step};
 use clamber_climber::ClimberInput;
 use clamber_colossus::{CreatureConfig, CreatureEvent, Sense};
 use clamber_fight::actions::{BOW, CUT, THROW};
@@ -13,7 +11,6 @@ use clamber_fight::{
     Arena, ArenaConfig, ArenaEvent, BowConfig, FighterConfig, ProjectileMotion, Weapon,
     creature_obstacle,
 };
-use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
 /// Direction in which archers shoot at the skin before their feet; not a unit vector.
@@ -59,10 +56,7 @@ fn wait(arena: &mut Arena, ticks: u32) -> Vec<ArenaEvent> {
 fn moving() -> Slab {
     let way = Vec3::new(3.0, 0.5, -1.0);
     Slab {
-        keys: vec![
-            (0.0, Vec3::ZERO, Vec3::ONE),
-            (600.0, way * 600.0, Vec3::ONE),
-        ],
+        keys: moves(way, 600.0),
         plate: true,
         ..Slab::default()
     }
@@ -77,18 +71,10 @@ fn an_arrow_that_breaks_its_plate_sticks_first_and_falls_as_fast_as_the_plate() 
     events.extend(wait(&mut arena, 3));
     // In the first tick, the arrow gets stuck and its hit breaks the plate. In the next tick, it comes loose, and the
     // creature reports that the plate staggered.
-    let stuck = events
-        .iter()
-        .position(|one| matches!(one, ArenaEvent::Stuck { .. }))
-        .unwrap();
-    let hit = events
-        .iter()
-        .position(|one| matches!(one, ArenaEvent::Hit { .. }))
-        .unwrap();
-    let loose = events
-        .iter()
-        .position(|one| matches!(one, ArenaEvent::CameLoose { .. }))
-        .unwrap();
+    let first = |is: fn(&ArenaEvent) -> bool| events.iter().position(is).unwrap();
+    let stuck = first(|one| matches!(one, ArenaEvent::Stuck { .. }));
+    let hit = first(|one| matches!(one, ArenaEvent::Hit { .. }));
+    let loose = first(|one| matches!(one, ArenaEvent::CameLoose { .. }));
     assert!(stuck < hit && hit < loose, "{events:?}");
     assert_eq!(struck(&events), [(None, Some(0))]);
     let broke = ArenaEvent::Creature {
@@ -130,8 +116,7 @@ fn a_cut_and_an_arrow_in_one_tick_are_taken_by_their_times() {
         let mut arena = arena.arena(config, &[on_plate, on_plate + DVec3::new(1.0, 0.0, 0.0)]);
         land(&mut arena);
         wait(&mut arena, 30);
-        let ground = HalfSpace::below(-100.0);
-        let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+        let terrain = low_ground();
         let mut events = Vec::new();
         for tick in 0..40 {
             // One fighter shoots. The other one begins a cut earlier or later.
@@ -255,10 +240,7 @@ fn struck(events: &[ArenaEvent]) -> Vec<(Option<usize>, Option<usize>)> {
 
 #[test]
 fn a_stone_is_heard_and_an_arrow_hurts_what_it_hits() {
-    let slab = Slab {
-        weak_points: vec![weak_point("heart", Vec3::ZERO, 9.0, 0)],
-        ..Slab::default()
-    };
+    let slab = Slab::with_heart(9.0);
     let mut arena = slab.arena(archer(), &[DVec3::Y]);
     land(&mut arena);
     let aim = DVec3::new(0.0, -0.3, 1.0);

@@ -1,7 +1,5 @@
 //! Weapons act from the body, and pass through neither terrain nor another creature.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::sync::Arc;
 
 use clamber_climber::{ClimberInput, ClimberMode};
@@ -11,7 +9,9 @@ use clamber_fight::{Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig};
 use clamber_world::{HalfSpace, Obstacle, ObstacleId, TriangleTerrain};
 use glam::{DVec3, Vec3};
 
-use crate::support::{GIANT, GROUND, HERO, Slab, giant, hits, mode, pressing, wall, weak_point};
+use crate::support::{
+    GIANT, GROUND, HERO, Slab, Wall, arena_with, giant, hits, level_ground, mode, pressing,
+};
 
 type Terrain<'a> = [(ObstacleId, &'a dyn Obstacle)];
 
@@ -75,10 +75,7 @@ fn stab(arena: &mut Arena, terrain: &Terrain<'_>) -> Vec<f64> {
 fn stabs_stop_at_a_floor() {
     let deep = HalfSpace::below(-50.0);
     let floor = block(Vec3::new(-20.0, 0.2, -20.0), Vec3::new(20.0, 0.6, 20.0));
-    let slab = Slab {
-        weak_points: vec![weak_point("heart", Vec3::ZERO, 9.0, 0)],
-        ..Slab::default()
-    };
+    let slab = Slab::with_heart(9.0);
     for (what, is_stone, is_creature) in [
         ("nothing", false, false),
         ("stone", true, false),
@@ -141,10 +138,7 @@ fn cuts_and_shots_stop_at_a_wall() {
             terrain.push((WALL, rock));
         }
         let fight = || {
-            let mut arena = Arena::new(ArenaConfig::default()).unwrap();
-            arena
-                .add_creature(wall(4), CreatureConfig::default())
-                .unwrap();
+            let mut arena = arena_with(Wall::of(4).kind());
             let place = DVec3::new(0.0, -1.0, 3.0);
             arena.add_fighter(FighterConfig::hero(), place).unwrap();
             let walk = ClimberInput {
@@ -181,8 +175,7 @@ fn cuts_and_shots_stop_at_a_wall() {
 /// A fighter that stands at the giant's foot, on any side, and shoots at the foot hits its near side.
 #[test]
 fn shots_at_what_is_near_hit_its_near_side() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = level_ground();
     let kind = giant();
     let mut shot = 0;
     for side in 0..12 {

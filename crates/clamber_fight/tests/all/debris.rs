@@ -1,7 +1,5 @@
 //! Rocks of a physics world that are rolled back together with an arena, for games that need it.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::support::{GIANT, GROUND, Slab};
 use clamber_climber::ClimberInput;
 use clamber_fight::{Arena, FighterConfig, creature_obstacle};

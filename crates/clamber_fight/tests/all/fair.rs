@@ -1,12 +1,10 @@
 //! Results that must not depend on the tick's length, on how fine a rig is, or on data outside the saved state.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::support;
 
 use std::sync::Arc;
 
-use crate::support::{GROUND, Slab, weak_point};
+use crate::support::{GROUND, Slab, kill, level_ground, pressing, rest, rises, weak_point};
 use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_colossus::{CreatureConfig, CreatureKind};
 use clamber_fight::actions::{CUT, STAB, THROW};
@@ -25,13 +23,6 @@ fn arena(tick: f64) -> Arena {
     .unwrap()
 }
 
-fn pressed(actions: u32) -> ClimberInput {
-    ClimberInput {
-        actions,
-        ..ClimberInput::IDLE
-    }
-}
-
 /// An arena with one fighter on the ground that respawns one second after its death.
 fn alone() -> Arena {
     let mut arena = arena(1.0 / 60.0);
@@ -45,17 +36,12 @@ fn alone() -> Arena {
 /// fresh arena that restores the state continues alike.
 #[test]
 fn a_throw_in_the_tick_of_death_is_lost() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = level_ground();
     let mut ours = alone();
-    for _ in 0..30 {
-        ours.step(&[ClimberInput::IDLE], &terrain).unwrap();
-    }
+    rest(&mut ours, &terrain, 30);
     // The fighter dies in the next step, in which it also presses the throw button.
-    let mut state = ours.save();
-    state.fighters[0].state.climber.hit_points = 0.0;
-    ours.restore(&state).unwrap();
-    ours.step(&[pressed(THROW)], &terrain).unwrap();
+    kill(&mut ours);
+    ours.step(&[pressing(THROW)], &terrain).unwrap();
     assert!(ours.fighter(FighterId(0)).unwrap().is_dead());
     let mut fresh = alone();
     fresh.restore(&ours.save()).unwrap();
@@ -63,12 +49,9 @@ fn a_throw_in_the_tick_of_death_is_lost() {
     for tick in 0..200 {
         for arena in [&mut ours, &mut fresh] {
             let events = arena.step(&[ClimberInput::IDLE], &terrain).unwrap();
-            rose |= events
-                .iter()
-                .any(|event| matches!(event, ArenaEvent::Rose { .. }));
-            let shot = events
-                .iter()
-                .any(|event| matches!(event, ArenaEvent::Shot { .. }));
+            rose |= rises(events);
+            let is_shot = |event: &ArenaEvent| matches!(event, ArenaEvent::Shot { .. });
+            let shot = events.iter().any(is_shot);
             assert!(!shot && arena.projectiles().is_empty(), "tick {tick}");
         }
         assert_eq!(ours.fingerprint(), fresh.fingerprint(), "tick {tick}");
@@ -109,20 +92,15 @@ fn arrows(speed: f64, along: f64, rate: f64) -> ([[usize; 2]; 2], Vec<f64>) {
         arena
             .add_fighter(FighterConfig::hero(), DVec3::new(0.0, -40.0, 30.0))
             .unwrap();
-        for _ in 0..10 {
-            arena.step(&[ClimberInput::IDLE], &terrain).unwrap();
-        }
+        rest(&mut arena, &terrain, 10);
         let aside = (shot % 12) as f64 * 0.07;
         let angle = shot as f64 * 2.4;
         let off = DVec3::new(libm::cos(angle), 0.0, libm::sin(angle)) * aside;
         // Each arrow falls at least 2 m in about 0.05 s, and arrives at another time within a tick.
         let height = 2.0 + 0.011 * shot as f64;
         let time = height / 40.0;
-        let heart = arena
-            .creature(CreatureId(0))
-            .unwrap()
-            .weak_point(0)
-            .unwrap();
+        let giant = arena.creature(CreatureId(0)).unwrap();
+        let heart = giant.weak_point(0).unwrap();
         let position = heart + off + DVec3::new((speed - along) * time, height, 0.0);
         let mut state = arena.save();
         state.projectiles.push(Projectile {
@@ -154,11 +132,8 @@ fn arrows(speed: f64, along: f64, rate: f64) -> ([[usize; 2]; 2], Vec<f64>) {
                 else {
                     continue;
                 };
-                let middle = arena
-                    .creature(CreatureId(0))
-                    .unwrap()
-                    .weak_point(0)
-                    .unwrap();
+                let giant = arena.creature(CreatureId(0)).unwrap();
+                let middle = giant.weak_point(0).unwrap();
                 let then = middle - DVec3::X * (speed * dt * (1.0 - time));
                 let off = (place - then).with_y(0.0).length();
                 damages.extend((damage > 0.0).then_some(damage));
@@ -188,8 +163,7 @@ fn weak_points_that_move_are_hit_where_they_are() {
 /// A sword that is raised in a fall has its full strength only while the fall lasts.
 #[test]
 fn a_charge_is_not_kept_across_a_hop() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = level_ground();
     let mut arena = arena(1.0 / 60.0);
     arena.add_fighter(FighterConfig::hero(), DVec3::Y).unwrap();
     let mut fell = 0.0f64;
@@ -197,7 +171,7 @@ fn a_charge_is_not_kept_across_a_hop() {
     for tick in 0..120u32 {
         let input = ClimberInput {
             jump: tick == 30,
-            ..pressed(if tick == 32 { STAB } else { 0 })
+            ..pressing(if tick == 32 { STAB } else { 0 })
         };
         arena.step(&[input], &terrain).unwrap();
         let fighter = arena.fighter(FighterId(0)).unwrap();
@@ -307,7 +281,7 @@ fn two_cuts(hero: FighterConfig, wall: &support::Wall) -> [f64; 3] {
         let actions = if tick == 200 || tick == 300 { CUT } else { 0 };
         let input = ClimberInput {
             walk,
-            ..pressed(actions)
+            ..pressing(actions)
         };
         for event in arena.step(&[input], &terrain).unwrap() {
             if let ArenaEvent::Hit { damage: done, .. } = event {
@@ -334,7 +308,7 @@ fn a_charge_is_not_kept_by_gripping_again() {
             let input = ClimberInput {
                 jump: tick == 30,
                 grip: tick >= grips_at,
-                ..pressed(if tick == 32 { STAB } else { 0 })
+                ..pressing(if tick == 32 { STAB } else { 0 })
             };
             arena.step(&[input], &terrain).unwrap();
             let fighter = arena.fighter(FighterId(0)).unwrap();

@@ -1,15 +1,11 @@
 //! Fighters and creatures that join and leave by orders.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test's helpers may fail like the test"
-)]
-
 use std::sync::Arc;
 
 use crate::orders::{IDLE, OTHER, idle, pair, state};
-use crate::support::{GIANT, GROUND, HERO, Slab, giant, mode, step, step_with, weak_point};
+use crate::support::{
+    GIANT, GROUND, HERO, Slab, arena_with, giant, level_ground, mode, moves, rest, step, step_with,
+};
 use clamber_climber::{ClimberEvent, ClimberInput, ClimberMode, StepRules};
 use clamber_colossus::CreatureConfig;
 use clamber_fight::actions::BOW;
@@ -26,10 +22,7 @@ use glam::{DVec3, Vec3};
 fn riders_and_arrows_of_who_leaves_are_let_go() {
     for speed in [0.0f32, 4.0] {
         let moves = Slab {
-            keys: vec![
-                (0.0, Vec3::ZERO, Vec3::ONE),
-                (600.0, Vec3::X * speed * 600.0, Vec3::ONE),
-            ],
+            keys: moves(Vec3::X * speed, 600.0),
             ..Slab::default()
         };
         let places = [DVec3::Y * 1.5, DVec3::new(3.0, 1.5, 0.0)];
@@ -137,10 +130,7 @@ fn fighters_join_and_leave() {
 /// An arrow goes on and does its damage after its archer has left.
 #[test]
 fn arrows_outlive_who_shot_them() {
-    let slab = Slab {
-        weak_points: vec![weak_point("heart", Vec3::ZERO, 9.0, 0)],
-        ..Slab::default()
-    };
+    let slab = Slab::with_heart(9.0);
     let mut arena = slab.arena(FighterConfig::hero(), &[DVec3::new(0.0, 9.0, 0.0)]);
     let ledge = HalfSpace::below(8.0);
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ledge)];
@@ -186,19 +176,13 @@ fn arrows_outlive_who_shot_them() {
 /// on.
 #[test]
 fn who_is_held_and_hunted_may_leave() {
-    let mut arena = Arena::new(ArenaConfig::default()).unwrap();
-    arena
-        .add_creature(giant(), CreatureConfig::default())
-        .unwrap();
+    let mut arena = arena_with(giant());
     let low = DVec3::new(0.0, 1.0, 25.0);
     for place in [low, low + DVec3::Y * 2.0] {
         arena.add_fighter(FighterConfig::hero(), place).unwrap();
     }
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
-    for _ in 0..60 * 5 {
-        arena.step(&[IDLE; 2], &terrain).unwrap();
-    }
+    let terrain = level_ground();
+    rest(&mut arena, &terrain, 60 * 5);
     let on = state(&arena, OTHER).support.unwrap().attachment.obstacle;
     assert_eq!(
         on,
@@ -224,9 +208,7 @@ fn who_is_held_and_hunted_may_leave() {
     let named =
         matches!(error, ArenaError::InputNotFinite { fighter } if fighter == other as usize);
     assert!(named, "{error}");
-    for _ in 0..60 * 10 {
-        arena.step(&[IDLE], &terrain).unwrap();
-    }
+    rest(&mut arena, &terrain, 60 * 10);
     let alone = state(&arena, OTHER);
     assert!(alone.position.y < 1.0, "{}", alone.position);
 }
@@ -236,10 +218,7 @@ fn who_is_held_and_hunted_may_leave() {
 #[test]
 fn a_restored_arena_follows_orders_alike() {
     let moves = Slab {
-        keys: vec![
-            (0.0, Vec3::ZERO, Vec3::ONE),
-            (600.0, Vec3::X * 4.0 * 600.0, Vec3::ONE),
-        ],
+        keys: moves(Vec3::X * 4.0, 600.0),
         ..Slab::default()
     };
     let mut arena = moves.arena(FighterConfig::hero(), &[DVec3::Y * 1.5]);
@@ -315,8 +294,7 @@ fn a_fresh_arena_takes_whoever_has_joined() {
     let mut arena = Arena::new(ArenaConfig::default()).unwrap();
     let id = arena.add_kind(Arc::clone(&kind)).unwrap();
     let slab = arena.add_kind(Slab::default().kind()).unwrap();
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = level_ground();
     let rules = StepRules::default();
     let at = |x: f64| CreatureConfig {
         position: DVec3::X * x,

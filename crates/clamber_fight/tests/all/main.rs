@@ -1,5 +1,7 @@
 //! Fights through the public interface: weapons, room, snapshots, and errors.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
 mod afar;
 mod aims;
 mod arrows;

@@ -1,7 +1,5 @@
 //! Weapons among moving obstacles: a fighter's ground, its target, and obstacles in between.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::sync::Arc;
 
 use clamber_climber::{ClimberInput, ClimberMode};

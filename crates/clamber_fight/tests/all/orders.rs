@@ -1,14 +1,8 @@
 //! Orders, except those that add and remove fighters and creatures, which are tested in `joining`.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test's helpers may fail like the test"
-)]
-
 use crate::support;
 
-use crate::support::{GIANT, GROUND, HERO, Slab, giant, land, mode, step, step_with};
+use crate::support::{GIANT, HERO, Slab, giant, land, level_ground, mode, step, step_with};
 use clamber_climber::{Blow, ClimberInput, ClimberMode, StepRules};
 use clamber_colossus::{CreatureConfig, CreatureEvent, Noise};
 use clamber_fight::actions::STAB;
@@ -16,7 +10,6 @@ use clamber_fight::{
     Arena, ArenaConfig, ArenaError, ArenaEvent, CreatureId, FighterConfig, FighterId, KindId,
     Order, ProjectileId, WeaponAction,
 };
-use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::DVec3;
 
 /// An input without buttons or directions.
@@ -41,42 +34,66 @@ pub(crate) fn pair() -> Arena {
     arena
 }
 
+fn hurt(damage: f64) -> Order {
+    let fighter = HERO;
+    Order::Hurt { fighter, damage }
+}
+
+fn put(position: DVec3) -> Order {
+    let fighter = HERO;
+    Order::PlaceFighter { fighter, position }
+}
+
+fn checkpoint(position: DVec3) -> Order {
+    let fighter = HERO;
+    Order::Checkpoint { fighter, position }
+}
+
+fn heal(hit_points: f64, stamina: f64) -> Order {
+    Order::Heal {
+        fighter: HERO,
+        hit_points,
+        stamina,
+    }
+}
+
+fn strike(velocity: DVec3, damage: f64) -> Order {
+    Order::Strike {
+        fighter: HERO,
+        blow: Blow {
+            velocity,
+            damage,
+            by: None,
+        },
+    }
+}
+
+fn put_creature(position: DVec3, yaw: f64) -> Order {
+    Order::PlaceCreature {
+        creature: GIANT,
+        position,
+        yaw,
+    }
+}
+
 #[test]
 fn hit_points_are_taken_given_and_end() {
     let mut arena = pair();
-    let hurt = |damage| Order::Hurt {
-        fighter: HERO,
-        damage,
-    };
     let before = state(&arena, OTHER);
     idle(&mut arena, &[hurt(0.25), hurt(0.125)]);
     assert_eq!(state(&arena, HERO).hit_points, 0.625);
     // Orders are followed one after another: healing restores the hit points that were lost earlier in the list.
-    let full = Order::Heal {
-        fighter: HERO,
-        hit_points: 1.0,
-        stamina: 0.0,
-    };
-    idle(&mut arena, &[hurt(0.5), full, hurt(0.375)]);
+    idle(&mut arena, &[hurt(0.5), heal(1.0, 0.0), hurt(0.375)]);
     assert_eq!(state(&arena, HERO).hit_points, 0.625);
-    let heal = Order::Heal {
-        fighter: HERO,
-        hit_points: 0.25,
-        stamina: 0.0,
-    };
-    idle(&mut arena, std::slice::from_ref(&heal));
+    idle(&mut arena, &[heal(0.25, 0.0)]);
     assert_eq!(state(&arena, HERO).hit_points, 0.875);
-    idle(&mut arena, std::slice::from_ref(&heal));
+    idle(&mut arena, &[heal(0.25, 0.0)]);
     assert_eq!(state(&arena, HERO).hit_points, 1.0, "more than full");
     let events = idle(&mut arena, &[hurt(1.0)]);
     assert!(events.contains(&ArenaEvent::Died { fighter: HERO }));
     // A dead fighter is not healed, and is revived at its checkpoint.
     let place = DVec3::new(-4.0, 1.2, 2.0);
-    let checkpoint = Order::Checkpoint {
-        fighter: HERO,
-        position: place,
-    };
-    idle(&mut arena, &[heal, checkpoint]);
+    idle(&mut arena, &[heal(0.25, 0.0), checkpoint(place)]);
     assert!(arena.fighter(HERO).unwrap().is_dead());
     let events = idle(&mut arena, &[Order::Rise { fighter: HERO }]);
     assert!(events.contains(&ArenaEvent::Rose { fighter: HERO }));
@@ -100,17 +117,7 @@ fn who_dies_rises_at_its_last_checkpoint_by_itself() {
     let mut arena = Slab::default().arena(config, &[DVec3::Y * 1.5]);
     land(&mut arena);
     let place = DVec3::new(5.0, 1.2, -5.0);
-    let orders = [
-        Order::Checkpoint {
-            fighter: HERO,
-            position: place,
-        },
-        Order::Hurt {
-            fighter: HERO,
-            damage: 1.0,
-        },
-    ];
-    idle(&mut arena, &orders);
+    idle(&mut arena, &[checkpoint(place), hurt(1.0)]);
     let rose = (0..60).any(|_| idle(&mut arena, &[]).contains(&ArenaEvent::Rose { fighter: HERO }));
     assert!(rose);
     assert!(state(&arena, HERO).position.distance(place) < 0.1);
@@ -119,14 +126,7 @@ fn who_dies_rises_at_its_last_checkpoint_by_itself() {
 #[test]
 fn blows_throw_and_add_up() {
     let mut arena = pair();
-    let blow = |x: f64, damage| Order::Strike {
-        fighter: HERO,
-        blow: Blow {
-            velocity: DVec3::new(x, 5.0, 0.0),
-            damage,
-            by: None,
-        },
-    };
+    let blow = |x: f64, damage| strike(DVec3::new(x, 5.0, 0.0), damage);
     idle(&mut arena, &[blow(-2.0, 0.25), blow(6.0, 0.25)]);
     let thrown = state(&arena, HERO);
     assert_eq!(thrown.hit_points, 0.5);
@@ -141,21 +141,13 @@ fn blows_throw_and_add_up() {
 #[test]
 fn who_is_put_somewhere_keeps_its_body_and_finds_room() {
     let mut arena = pair();
-    let hurt = Order::Hurt {
-        fighter: HERO,
-        damage: 0.5,
-    };
-    idle(&mut arena, &[hurt]);
+    idle(&mut arena, &[hurt(0.5)]);
     step(&mut arena, &support::pressing(STAB));
     assert!(!matches!(
         arena.fighter(HERO).unwrap().act(),
         WeaponAction::Ready
     ));
     let place = DVec3::new(-5.0, 2.0, 4.0);
-    let put = |position| Order::PlaceFighter {
-        fighter: HERO,
-        position,
-    };
     idle(&mut arena, &[put(place)]);
     let there = state(&arena, HERO);
     assert!(there.position.distance(place) < 0.01);
@@ -185,19 +177,8 @@ fn who_is_put_somewhere_keeps_its_body_and_finds_room() {
 #[test]
 fn who_is_put_somewhere_is_not_struck_there() {
     let mut arena = pair();
-    let strike = Order::Strike {
-        fighter: HERO,
-        blow: Blow {
-            velocity: DVec3::new(6.0, 5.0, 0.0),
-            damage: 0.25,
-            by: None,
-        },
-    };
-    let put = Order::PlaceFighter {
-        fighter: HERO,
-        position: DVec3::new(-5.0, 2.0, 4.0),
-    };
-    idle(&mut arena, &[strike, put]);
+    let blow = strike(DVec3::new(6.0, 5.0, 0.0), 0.25);
+    idle(&mut arena, &[blow, put(DVec3::new(-5.0, 2.0, 4.0))]);
     let there = state(&arena, HERO);
     assert!(there.velocity.length() < 1.0, "{}", there.velocity);
     assert_eq!(there.hit_points, 1.0);
@@ -208,12 +189,8 @@ fn who_is_on_a_creature_that_is_put_elsewhere_is_left_behind() {
     let mut arena = pair();
     assert_eq!(mode(&arena), ClimberMode::Standing);
     let before = state(&arena, HERO).position;
-    let put = Order::PlaceCreature {
-        creature: GIANT,
-        position: DVec3::new(400.0, 50.0, 0.0),
-        yaw: 1.0,
-    };
-    idle(&mut arena, &[put]);
+    let elsewhere = DVec3::new(400.0, 50.0, 0.0);
+    idle(&mut arena, &[put_creature(elsewhere, 1.0)]);
     let creature = arena.creature(GIANT).unwrap();
     assert_eq!(creature.state().position().x, 400.0);
     assert_eq!(mode(&arena), ClimberMode::Falling);
@@ -227,8 +204,7 @@ fn creatures_are_sent_told_and_hurt() {
     let mut arena = Arena::new(ArenaConfig::default()).unwrap();
     let config = CreatureConfig::default();
     arena.add_creature(giant(), config).unwrap();
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = level_ground();
     let rules = StepRules::default();
     let mut give = |orders: &[Order], ticks: u32, wanted: &dyn Fn(&ArenaEvent) -> bool| {
         let mut found = false;
@@ -330,132 +306,57 @@ fn orders_to_nobody_are_told() {
 #[test]
 fn orders_that_cannot_be_followed_are_refused_and_nothing_is_changed() {
     let mut arena = pair();
-    let (fighter, creature) = (HERO, GIANT);
+    let creature = GIANT;
     let hero = || Box::new(FighterConfig::hero());
     let mut broken = hero();
     broken.climber.body.radius = f64::NAN;
     let nowhere = DVec3::new(0.0, f64::NAN, 0.0);
     let far = DVec3::X * 1e13;
-    let hurt = |damage| Order::Hurt { fighter, damage };
-    let blow = |velocity, damage| Order::Strike {
-        fighter,
-        blow: Blow {
-            velocity,
-            damage,
-            by: None,
-        },
-    };
     let noise = |place, loudness| Order::Noise(Noise { place, loudness });
-    let kind = arena.kinds().next().unwrap().0;
+    let join = |config, position| Order::AddFighter { config, position };
+    let known = arena.kinds().next().unwrap().0;
+    let add = |kind, config| Order::AddCreature { kind, config };
+    let usual = CreatureConfig::default();
+    let flat = CreatureConfig {
+        scale: 0.0,
+        ..usual
+    };
+    let away = CreatureConfig {
+        position: far,
+        ..usual
+    };
+    let sense = Order::Sense {
+        creature,
+        name: "hunger".to_owned(),
+        value: 1.0,
+    };
+    let (to, state) = (Some(DVec3::Z), "flies".to_owned());
+    let harm = Order::Harm {
+        creature,
+        weak_point: 0,
+        damage: 1.0,
+    };
     let wrong = [
         (hurt(f64::NAN), "damage"),
         (hurt(-0.1), "damage"),
         (hurt(1.5), "damage"),
-        (
-            Order::Heal {
-                fighter,
-                hit_points: 0.0,
-                stamina: 2.0,
-            },
-            "stamina",
-        ),
-        (blow(nowhere, 0.1), "velocity"),
-        (blow(DVec3::X, f64::INFINITY), "damage"),
+        (heal(0.0, 2.0), "stamina"),
+        (strike(nowhere, 0.1), "velocity"),
+        (strike(DVec3::X, f64::INFINITY), "damage"),
         (noise(nowhere, 1.0), "place"),
         (noise(DVec3::X, -1.0), "loudness"),
-        (
-            Order::PlaceFighter {
-                fighter,
-                position: nowhere,
-            },
-            "place",
-        ),
-        (
-            Order::Checkpoint {
-                fighter,
-                position: far,
-            },
-            "place",
-        ),
-        (
-            Order::AddFighter {
-                config: broken,
-                position: DVec3::Y,
-            },
-            "radius",
-        ),
-        (
-            Order::AddFighter {
-                config: hero(),
-                position: nowhere,
-            },
-            "position",
-        ),
-        (
-            Order::AddCreature {
-                kind: KindId(kind.0 ^ 1),
-                config: CreatureConfig::default(),
-            },
-            "add_kind",
-        ),
-        (
-            Order::AddCreature {
-                kind,
-                config: CreatureConfig {
-                    scale: 0.0,
-                    ..CreatureConfig::default()
-                },
-            },
-            "scale",
-        ),
-        (
-            Order::AddCreature {
-                kind,
-                config: CreatureConfig {
-                    position: far,
-                    ..CreatureConfig::default()
-                },
-            },
-            "position",
-        ),
-        (
-            Order::Sense {
-                creature,
-                name: "hunger".to_owned(),
-                value: 1.0,
-            },
-            "hunger",
-        ),
-        (
-            Order::Send {
-                creature,
-                to: Some(DVec3::Z),
-            },
-            "walk",
-        ),
-        (
-            Order::Enter {
-                creature,
-                state: "flies".to_owned(),
-            },
-            "lies",
-        ),
-        (
-            Order::PlaceCreature {
-                creature,
-                position: DVec3::ZERO,
-                yaw: f64::NAN,
-            },
-            "heading",
-        ),
-        (
-            Order::Harm {
-                creature,
-                weak_point: 0,
-                damage: 1.0,
-            },
-            "weak point",
-        ),
+        (put(nowhere), "place"),
+        (checkpoint(far), "place"),
+        (join(broken, DVec3::Y), "radius"),
+        (join(hero(), nowhere), "position"),
+        (add(KindId(known.0 ^ 1), usual), "add_kind"),
+        (add(known, flat), "scale"),
+        (add(known, away), "position"),
+        (sense, "hunger"),
+        (Order::Send { creature, to }, "walk"),
+        (Order::Enter { creature, state }, "lies"),
+        (put_creature(DVec3::ZERO, f64::NAN), "heading"),
+        (harm, "weak point"),
     ];
     let before = arena.fingerprint();
     let rules = StepRules::default();
@@ -504,12 +405,7 @@ fn orders_come_back_from_their_bytes() {
 fn what_is_put_far_away_can_be_restored() {
     let mut arena = pair();
     let far = DVec3::new(1e12, 0.0, -1e12);
-    let put = Order::PlaceCreature {
-        creature: GIANT,
-        position: far,
-        yaw: 0.7,
-    };
-    idle(&mut arena, &[put]);
+    idle(&mut arena, &[put_creature(far, 0.7)]);
     for _ in 0..30 {
         idle(&mut arena, &[]);
     }

@@ -1,11 +1,9 @@
 //! Fighters in an arena: hit-stop, death, respawn, the sword's light, and refused inputs. Scenes B34 and B35.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::support;
 
 use crate::support::{
-    GIANT, GROUND, HERO, Slab, land, mode, pressing, step, step_with, weak_point,
+    GIANT, GROUND, HERO, Slab, land, low_ground, mode, pressing, rest, step, step_with, weak_point,
 };
 use clamber_climber::{ClimberError, ClimberInput, ClimberMode, StepRules};
 use clamber_colossus::CreatureConfig;
@@ -46,8 +44,7 @@ fn stabbing(hit_stop: f64) -> (Vec<ArenaState>, u32) {
         config,
         &[DVec3::new(-2.0, 1.0, 0.0), DVec3::new(4.0, 1.0, 2.0)],
     );
-    let ground = HalfSpace::below(-100.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = low_ground();
     let (mut states, mut held) = (Vec::new(), 0);
     for tick in 0..240 {
         let ours = pressing(if tick == 60 || tick == 120 { STAB } else { 0 });
@@ -137,9 +134,7 @@ fn whoever_dies_falls_and_stands_up_where_it_began() {
             .contains(&ArenaEvent::Died { fighter: HERO })
     });
     assert!(died && arena.fighter(HERO).unwrap().is_dead());
-    for _ in 0..1000 {
-        arena.step(&[ClimberInput::IDLE], &[]).unwrap();
-    }
+    rest(&mut arena, &[], 1000);
     assert!(arena.fighter(HERO).unwrap().is_dead(), "forever");
 }
 
@@ -147,8 +142,7 @@ fn whoever_dies_falls_and_stands_up_where_it_began() {
 fn a_sword_shows_the_way_in_the_sun() {
     let mut arena = swaying().arena(FighterConfig::hero(), &[DVec3::new(-2.0, 1.0, 0.0)]);
     land(&mut arena);
-    let ground = HalfSpace::below(-100.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = low_ground();
     for _ in 0..50 {
         step(&mut arena, &ClimberInput::IDLE);
         let creature = arena.creature(GIANT).unwrap();

@@ -1,15 +1,11 @@
 //! Rollback by ggrs: every tick is played again with the same checksum, and peers over a bad connection have the same
 //! fight. Scenes B53 and B55.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
-use crate::support;
-
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use crate::support::{Melee, giant};
+use crate::support::{Melee, giant, level_ground};
 use clamber_colossus::Noise;
 use clamber_fight::rollback::ggrs::{
     DesyncDetection, GgrsError, GgrsEvent, GgrsRequest, Message, NonBlockingSocket, P2PSession,
@@ -87,24 +83,15 @@ fn every_tick_of_the_fight_is_the_same_when_it_is_played_again() {
         }
         // The session compares each checksum with the first one of its tick.
         for request in session.advance_frame().unwrap() {
-            let sum = match &request {
-                GgrsRequest::SaveGameState { .. } => Some(melee.arena.fingerprint()),
-                GgrsRequest::LoadGameState { .. } => {
-                    loaded += 1;
-                    None
-                }
-                GgrsRequest::AdvanceFrame { .. } => None,
-            };
-            let cell = match &request {
+            let saves = match &request {
                 GgrsRequest::SaveGameState { cell, .. } => Some(cell.clone()),
                 _ => None,
             };
-            rollback
-                .handle(&mut melee.arena, vec![request], |arena, inputs, asked| {
-                    melee_step(arena, inputs, asked)
-                })
-                .unwrap();
-            if let (Some(cell), Some(sum)) = (cell, sum) {
+            let saves = saves.map(|cell| (cell, melee.arena.fingerprint()));
+            loaded += u64::from(matches!(request, GgrsRequest::LoadGameState { .. }));
+            let handled = rollback.handle(&mut melee.arena, vec![request], melee_step);
+            handled.unwrap();
+            if let Some((cell, sum)) = saves {
                 // The saved cell contains the checksum, which is the state's fingerprint.
                 saved += 1;
                 assert!(
@@ -126,9 +113,7 @@ fn melee_step(
     inputs: &[clamber_climber::ClimberInput],
     asked: &[u16],
 ) -> Result<(), clamber_fight::ArenaError> {
-    let ground = clamber_world::HalfSpace::below(0.0);
-    let terrain: [(clamber_world::ObstacleId, &dyn clamber_world::Obstacle); 1] =
-        [(support::GROUND, &ground)];
+    let terrain = level_ground();
     let orders = orders(arena, asked);
     let rules = clamber_climber::StepRules::default();
     arena.step_with(inputs, &orders, &terrain, &rules).map(drop)

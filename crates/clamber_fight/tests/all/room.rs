@@ -1,13 +1,11 @@
 //! Fighters that join, respawn or are moved find room.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
-use crate::support::{GROUND, giant};
+use crate::support::{GROUND, giant, kill, level_ground, rest, rises};
 use clamber_climber::{ClimberInput, StepRules};
 use clamber_colossus::CreatureConfig;
 use clamber_fight::{Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId, Order};
 use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
-use clamber_world::{BodyPoses, HalfSpace, Obstacle, ObstacleId, RapierTerrain};
+use clamber_world::{BodyPoses, HalfSpace, Obstacle, ObstacleId, RapierTerrain, WorldCapsule};
 use glam::DVec3;
 
 fn arena() -> Arena {
@@ -19,11 +17,18 @@ fn died(events: &[ArenaEvent]) -> usize {
     events.iter().filter(died).count()
 }
 
+/// The least distance of a body's axis from an obstacle that it overlaps; infinite if it overlaps none.
+fn distance(obstacle: &dyn Obstacle, body: &WorldCapsule) -> f64 {
+    let mut contacts = Vec::new();
+    obstacle.overlap_capsule(body, &mut contacts);
+    let distances = contacts.iter().map(|contact| contact.distance);
+    distances.fold(f64::INFINITY, f64::min)
+}
+
 /// Fighters with the same spawn point stand apart from the first ticks on, and none of them is crushed to death.
 #[test]
 fn fighters_with_one_spawn_point_stand_apart() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = level_ground();
     for count in [2usize, 3, 8, 100] {
         for apart in [0.0, 1e-9, 0.01, 0.1] {
             let mut arena = arena();
@@ -66,8 +71,7 @@ fn fighters_with_one_spawn_point_stand_apart() {
 /// A fighter that joins or respawns inside the giant is put beside it.
 #[test]
 fn nobody_rises_inside_a_creature() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = level_ground();
     let kind = giant();
     for (joint, scale) in [
         ("foot.L", 1.0),
@@ -93,13 +97,10 @@ fn nobody_rises_inside_a_creature() {
             let mut looked = 0;
             for tick in 0..160 {
                 if tick == 60 && dies {
-                    let mut state = arena.save();
-                    state.fighters[0].state.climber.hit_points = 0.0;
-                    arena.restore(&state).unwrap();
+                    kill(&mut arena);
                 }
                 let events = arena.step(&[ClimberInput::IDLE], &terrain).unwrap();
-                let is_rise = |event: &ArenaEvent| matches!(event, ArenaEvent::Rose { .. });
-                if tick != 0 && !events.iter().any(is_rise) {
+                if tick != 0 && !rises(events) {
                     continue;
                 }
                 looked += 1;
@@ -119,10 +120,7 @@ fn nobody_rises_inside_a_creature() {
                     inside < 10,
                     "{joint}, tick {tick}: at {middle}, {inside} of 20"
                 );
-                let mut contacts = Vec::new();
-                skin.overlap_capsule(&body, &mut contacts);
-                let near = contacts.iter().map(|contact| contact.distance);
-                let near = near.fold(f64::INFINITY, f64::min);
+                let near = distance(skin, &body);
                 assert!(near > 0.7 * body.radius, "{joint}, tick {tick}: {near} m");
             }
             assert_eq!(
@@ -146,26 +144,16 @@ fn who_finds_no_room_waits() {
     let rock = HalfSpace::below(30.0);
     let open: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
     let full: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &rock)];
-    for _ in 0..20 {
-        arena.step(&[ClimberInput::IDLE], &open).unwrap();
-    }
-    let mut state = arena.save();
-    state.fighters[0].state.climber.hit_points = 0.0;
-    arena.restore(&state).unwrap();
+    rest(&mut arena, &open, 20);
+    kill(&mut arena);
     for tick in 0..300 {
         let events = arena.step(&[ClimberInput::IDLE], &full).unwrap();
-        let rose = events
-            .iter()
-            .any(|event| matches!(event, ArenaEvent::Rose { .. }));
-        assert!(!rose, "tick {tick}");
+        assert!(!rises(events), "tick {tick}");
     }
     let mut rose = None;
     for tick in 0..60 {
         let events = arena.step(&[ClimberInput::IDLE], &open).unwrap();
-        if events
-            .iter()
-            .any(|event| matches!(event, ArenaEvent::Rose { .. }))
-        {
+        if rises(events) {
             rose.get_or_insert(tick);
         }
     }
@@ -191,14 +179,10 @@ fn nobody_is_put_into_rock() {
     for what in ["rises", "is put", "joins"] {
         let mut arena = arena();
         arena.add_fighter(*config, there).unwrap();
-        for _ in 0..20 {
-            arena.step(&[ClimberInput::IDLE], &open).unwrap();
-        }
+        rest(&mut arena, &open, 20);
         let order = match what {
             "rises" => {
-                let mut state = arena.save();
-                state.fighters[0].state.climber.hit_points = 0.0;
-                arena.restore(&state).unwrap();
+                kill(&mut arena);
                 arena.step(&[ClimberInput::IDLE], &open).unwrap();
                 Order::Rise { fighter }
             }
@@ -233,8 +217,7 @@ fn nobody_is_put_into_rock() {
 /// there is some.
 #[test]
 fn who_is_put_where_no_room_is_looks_again() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = level_ground();
     let rules = StepRules::default();
     let kind = giant();
     let config = CreatureConfig {
@@ -258,9 +241,7 @@ fn who_is_put_where_no_room_is_looks_again() {
                 let put = Order::PlaceFighter { fighter, position };
                 (put, vec![ClimberInput::IDLE])
             };
-            for _ in 0..40 {
-                arena.step(&idle, &terrain).unwrap();
-            }
+            rest(&mut arena, &terrain, 40);
             let has_begun = |arena: &Arena| {
                 let state = serde_json::to_value(arena.save()).unwrap();
                 let begun = state.pointer("/fighters/0/state/has_begun").unwrap();
@@ -288,9 +269,7 @@ fn who_is_put_where_no_room_is_looks_again() {
                 yaw: 0.0,
             };
             arena.step_with(&idle, &[away], &terrain, &rules).unwrap();
-            for _ in 0..31 {
-                arena.step(&idle, &terrain).unwrap();
-            }
+            rest(&mut arena, &terrain, 31);
             assert!(has_begun(&arena), "joins: {joins}, {waits} ticks");
         }
     }
@@ -299,8 +278,7 @@ fn who_is_put_where_no_room_is_looks_again() {
 /// A fighter that stands where a creature is put is outside of it in the same tick, and is not struck there before.
 #[test]
 fn creatures_that_are_put_on_people_make_room() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = level_ground();
     let rules = StepRules::default();
     let kind = giant();
     let offsets = [-1.5, -0.8, 0.0, 0.8, 1.5];
@@ -330,9 +308,7 @@ fn creatures_that_are_put_on_people_make_room() {
         hero.crush = None;
         arena.add_fighter(hero, DVec3::Y).unwrap();
         let idle = [ClimberInput::IDLE];
-        for _ in 0..40 {
-            arena.step(&idle, &terrain).unwrap();
-        }
+        rest(&mut arena, &terrain, 40);
         let put = Order::PlaceCreature {
             creature: CreatureId(0),
             position: off - foot.with_y(0.0),
@@ -348,10 +324,7 @@ fn creatures_that_are_put_on_people_make_room() {
             !skin.in_world().is_inside(middle),
             "{scale} {off}: {middle}"
         );
-        let mut contacts = Vec::new();
-        skin.overlap_capsule(&body, &mut contacts);
-        let near = contacts.iter().map(|contact| contact.distance);
-        let near = near.fold(f64::INFINITY, f64::min);
+        let near = distance(skin, &body);
         assert!(near > 0.7 * body.radius, "{scale} {off}: {near} m");
     }
 }

@@ -1,14 +1,9 @@
 //! Saved arenas: runs continue with the same bits, missing fields are noticed, and damaged bytes are refused. Scene
 //! B54.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
-use crate::support;
-
 use std::collections::BTreeMap;
 
-use crate::support::{Melee, Slab, giant, weak_point};
-use clamber_colossus::CreatureConfig;
+use crate::support::{Melee, Slab, arena_with, giant, level_ground, weak_point};
 use clamber_fight::{Arena, ArenaConfig, ArenaError, ArenaState, FighterConfig};
 use clamber_surface::Fingerprint;
 use glam::{DVec3, Vec3};
@@ -125,15 +120,9 @@ fn fresh_arenas_go_on_with_the_same_bits_in_ten_fights() {
     }
 }
 
-/// Path of a value in a saved state: names of fields, and indices.
-type Path = &'static [&'static str];
-
-fn at(value: &mut Value, path: Path) -> &mut Value {
-    path.iter()
-        .fold(value, |value, key| match key.parse::<usize>() {
-            Ok(index) => &mut value[index],
-            Err(_) => value.get_mut(key).unwrap(),
-        })
+/// The value at a path in a saved state: names of fields, and indices.
+fn at<'a>(value: &'a mut Value, path: &str) -> &'a mut Value {
+    value.pointer_mut(path).unwrap()
 }
 
 fn text_hash(text: &str) -> u64 {
@@ -147,59 +136,44 @@ fn text_hash(text: &str) -> u64 {
 #[test]
 fn each_field_that_is_left_out_is_noticed_within_a_second() {
     /// Fields that are left out in turn: a name for messages, and the path in the saved state.
-    const FIELDS: [(&str, Path); 31] = [
-        ("tick", &["tick"]),
-        (
-            "pendulum",
-            &["fighters", "0", "state", "climber", "hanging"],
-        ),
-        (
-            "filter of the shake",
-            &["fighters", "0", "state", "climber", "shake"],
-        ),
-        ("stamina", &["fighters", "0", "state", "climber", "stamina"]),
-        (
-            "hit points",
-            &["fighters", "1", "state", "climber", "hit_points"],
-        ),
-        ("support", &["fighters", "0", "state", "climber", "support"]),
+    const FIELDS: [(&str, &str); 31] = [
+        ("tick", "/tick"),
+        ("pendulum", "/fighters/0/state/climber/hanging"),
+        ("filter of the shake", "/fighters/0/state/climber/shake"),
+        ("stamina", "/fighters/0/state/climber/stamina"),
+        ("hit points", "/fighters/1/state/climber/hit_points"),
+        ("support", "/fighters/0/state/climber/support"),
         (
             "support's velocity",
-            &["fighters", "0", "state", "climber", "support_velocity"],
+            "/fighters/0/state/climber/support_velocity",
         ),
-        ("heading", &["fighters", "1", "state", "climber", "heading"]),
-        ("hit-stop", &["fighters", "2", "state", "hit_stop"]),
-        ("charge and other acts", &["fighters", "0", "state", "act"]),
-        ("buttons", &["fighters", "0", "state", "actions"]),
-        ("blow", &["fighters", "1", "state", "blow"]),
-        ("random stream", &["fighters", "1", "state", "random"]),
-        ("arrows", &["projectiles"]),
-        ("number of the next arrow", &["next_projectile"]),
-        ("noises", &["noises"]),
-        ("plates", &["creatures", "1", "state", "damage", "plates"]),
+        ("heading", "/fighters/1/state/climber/heading"),
+        ("hit-stop", "/fighters/2/state/hit_stop"),
+        ("charge and other acts", "/fighters/0/state/act"),
+        ("buttons", "/fighters/0/state/actions"),
+        ("blow", "/fighters/1/state/blow"),
+        ("random stream", "/fighters/1/state/random"),
+        ("arrows", "/projectiles"),
+        ("number of the next arrow", "/next_projectile"),
+        ("noises", "/noises"),
+        ("plates", "/creatures/1/state/damage/plates"),
         (
             "hit points of weak points",
-            &["creatures", "1", "state", "damage", "hit_points"],
+            "/creatures/1/state/damage/hit_points",
         ),
-        ("brain", &["creatures", "0", "state", "brain"]),
-        ("clips", &["creatures", "0", "state", "clips", "animator"]),
-        ("feet", &["creatures", "0", "state", "feet"]),
-        ("rides", &["creatures", "0", "state", "perceived", "rides"]),
-        ("pose", &["creatures", "0", "state", "pose"]),
-        ("way", &["creatures", "0", "state", "walked"]),
-        ("wounds", &["creatures", "0", "state", "damage", "wounds"]),
-        ("gaze", &["creatures", "0", "state", "head", "target"]),
-        ("prey", &["creatures", "0", "state", "perceived", "prey"]),
-        (
-            "whom it struck",
-            &["creatures", "0", "state", "striking", "struck"],
-        ),
-        (
-            "place",
-            &["creatures", "0", "state", "on_ground", "position"],
-        ),
-        ("speed", &["creatures", "0", "state", "motion", "speed"]),
-        ("hips", &["creatures", "0", "state", "hips"]),
+        ("brain", "/creatures/0/state/brain"),
+        ("clips", "/creatures/0/state/clips/animator"),
+        ("feet", "/creatures/0/state/feet"),
+        ("rides", "/creatures/0/state/perceived/rides"),
+        ("pose", "/creatures/0/state/pose"),
+        ("way", "/creatures/0/state/walked"),
+        ("wounds", "/creatures/0/state/damage/wounds"),
+        ("gaze", "/creatures/0/state/head/target"),
+        ("prey", "/creatures/0/state/perceived/prey"),
+        ("whom it struck", "/creatures/0/state/striking/struck"),
+        ("place", "/creatures/0/state/on_ground/position"),
+        ("speed", "/creatures/0/state/motion/speed"),
+        ("hips", "/creatures/0/state/hips"),
     ];
     let mut melee = Melee::new(&giant());
     let (mut states, mut sums, mut fields) = (Vec::new(), Vec::new(), Vec::new());
@@ -217,7 +191,7 @@ fn each_field_that_is_left_out_is_noticed_within_a_second() {
         // Prey in view is sensed anew in each tick. The remembered prey matters only while it is out of view.
         let is_remembered = |from: &usize| {
             let mut state = value(*from);
-            let unseen = &["creatures", "0", "state", "perceived", "unseen"];
+            let unseen = "/creatures/0/state/perceived/unseen";
             let hides = at(&mut state, unseen).as_u64() > Some(0);
             name != "prey" || hides && !at(&mut state, path).is_null()
         };
@@ -357,7 +331,7 @@ fn states_that_were_changed_are_refused_or_played() {
         played += 1;
         for _ in 0..3 {
             // A state that is accepted can be played.
-            melee_step(&mut melee);
+            melee.step();
         }
         // The resulting state can be saved and restored again.
         let bytes = melee.arena.to_bytes().unwrap();
@@ -367,14 +341,6 @@ fn states_that_were_changed_are_refused_or_played() {
     }
     println!("{refused} refused, {played} played");
     assert!(refused > 50 && played > 200);
-}
-
-fn melee_step(melee: &mut Melee) {
-    let inputs = Melee::inputs(melee.arena.tick());
-    let ground = clamber_world::HalfSpace::below(0.0);
-    let terrain: [(clamber_world::ObstacleId, &dyn clamber_world::Obstacle); 1] =
-        [(support::GROUND, &ground)];
-    melee.arena.step(&inputs, &terrain).unwrap();
 }
 
 /// Replaces one value at random.
@@ -455,10 +421,7 @@ fn a_restore_that_fails_changes_nothing() {
 
 #[test]
 fn a_snapshot_of_a_giant_and_eight_climbers_is_small() {
-    let mut arena = Arena::new(ArenaConfig::default()).unwrap();
-    arena
-        .add_creature(giant(), CreatureConfig::default())
-        .unwrap();
+    let mut arena = arena_with(giant());
     for index in 0..8 {
         let place = DVec3::new(f64::from(index) - 4.0, 1.0, 20.0);
         arena.add_fighter(FighterConfig::hero(), place).unwrap();
@@ -466,8 +429,7 @@ fn a_snapshot_of_a_giant_and_eight_climbers_is_small() {
     let mut most = 0;
     for tick in 0..300u64 {
         let inputs = [Melee::inputs(tick)[1]; 8];
-        let ground = clamber_world::HalfSpace::below(0.0);
-        arena.step(&inputs, &[(support::GROUND, &ground)]).unwrap();
+        arena.step(&inputs, &level_ground()).unwrap();
         most = most.max(arena.to_bytes().unwrap().len());
     }
     println!("{most} bytes");

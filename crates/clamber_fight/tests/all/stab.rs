@@ -1,8 +1,7 @@
 //! Stabs: charge, damage, interruptions, and targets. Scenes B26 to B28.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
-
 use crate::behind::block;
+use crate::orders::state;
 use crate::support::{
     GIANT, GROUND, HERO, Slab, hits, land, mode, pressing, step, step_with, weak_point,
 };
@@ -16,6 +15,12 @@ use glam::{DVec3, Vec3};
 
 /// Tick rates of the tests, ticks a second.
 const RATES: [f64; 4] = [30.0, 60.0, 120.0, 240.0];
+
+/// An input that only grips.
+const GRIPS: ClimberInput = ClimberInput {
+    grip: true,
+    ..ClimberInput::IDLE
+};
 
 fn hero() -> FighterConfig {
     FighterConfig {
@@ -32,13 +37,18 @@ fn charge(arena: &Arena) -> f64 {
     arena.fighter(HERO).unwrap().charge()
 }
 
-/// Presses the stab button, and waits until the sword is raised.
-fn raise(arena: &mut Arena, hold: &ClimberInput) {
+/// A step in which the stab button is pressed.
+fn press(arena: &mut Arena, hold: &ClimberInput) -> Vec<ArenaEvent> {
     let pressed = ClimberInput {
         actions: STAB,
         ..*hold
     };
-    step(arena, &pressed);
+    step(arena, &pressed)
+}
+
+/// Presses the stab button, and waits until the sword is raised.
+fn raise(arena: &mut Arena, hold: &ClimberInput) {
+    press(arena, hold);
     for _ in 0..600 {
         if matches!(act(arena), WeaponAction::Charge { .. }) {
             return;
@@ -50,13 +60,7 @@ fn raise(arena: &mut Arena, hold: &ClimberInput) {
 
 /// Strikes, and returns the damages of the hits.
 fn strike(arena: &mut Arena, hold: &ClimberInput) -> Vec<f64> {
-    let mut all = hits(&step(
-        arena,
-        &ClimberInput {
-            actions: STAB,
-            ..*hold
-        },
-    ));
+    let mut all = hits(&press(arena, hold));
     for _ in 0..600 {
         if act(arena) == WeaponAction::Ready {
             return all;
@@ -69,8 +73,7 @@ fn strike(arena: &mut Arena, hold: &ClimberInput) -> Vec<f64> {
 fn with_weak_point(rate: f64, hit_points: f64) -> Slab {
     Slab {
         rate,
-        weak_points: vec![weak_point("heart", Vec3::ZERO, hit_points, 0)],
-        ..Slab::default()
+        ..Slab::with_heart(hit_points)
     }
 }
 
@@ -147,10 +150,7 @@ fn a_shake_beyond_the_hang_threshold_breaks_a_stab_off_within_a_tick() {
             config.climber.stamina = None;
             let mut arena = jerking(rate, acceleration).arena(config, &[DVec3::Y]);
             land(&mut arena);
-            let hold = ClimberInput {
-                grip: true,
-                ..ClimberInput::IDLE
-            };
+            let hold = GRIPS;
             for _ in 0..5 {
                 step(&mut arena, &hold);
             }
@@ -160,13 +160,7 @@ fn a_shake_beyond_the_hang_threshold_breaks_a_stab_off_within_a_tick() {
             let (mut broke, mut shaken) = (None, None);
             for tick in 0..(7.0 * rate) as u32 {
                 let events = step(&mut arena, &hold);
-                let shake = arena
-                    .fighter(HERO)
-                    .unwrap()
-                    .climber()
-                    .state()
-                    .shake
-                    .length();
+                let shake = state(&arena, HERO).shake.length();
                 if shake > most && shaken.is_none() {
                     shaken = Some(tick);
                 }
@@ -188,10 +182,7 @@ fn a_strike_in_the_tick_of_the_shake_is_broken_off_at_every_rate() {
         let mut config = hero();
         config.climber.ground.throw_acceleration = f64::INFINITY;
         config.climber.stamina = None;
-        let hold = ClimberInput {
-            grip: true,
-            ..ClimberInput::IDLE
-        };
+        let hold = GRIPS;
         let mut arena = jerking(rate, 25.0).arena(config, &[DVec3::Y]);
         land(&mut arena);
         for _ in 0..5 {
@@ -205,13 +196,7 @@ fn a_strike_in_the_tick_of_the_shake_is_broken_off_at_every_rate() {
             }
         };
         arena.restore(&before).unwrap();
-        let events = step(
-            &mut arena,
-            &ClimberInput {
-                actions: STAB,
-                ..hold
-            },
-        );
+        let events = press(&mut arena, &hold);
         assert!(
             events.contains(&ArenaEvent::BrokenOff { fighter: HERO }),
             "{rate} Hz"
@@ -299,13 +284,7 @@ fn the_tip_goes_to_its_material_point_on_stretched_and_moving_skin() {
             step(&mut arena, &hold);
         }
         raise(&mut arena, &hold);
-        let mut events = step(
-            &mut arena,
-            &ClimberInput {
-                actions: STAB,
-                ..hold
-            },
-        );
+        let mut events = press(&mut arena, &hold);
         let WeaponAction::Strike {
             target: StabTarget::Skin(aimed),
             ..

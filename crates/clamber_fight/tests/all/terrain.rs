@@ -1,7 +1,5 @@
 //! The same fight over three implementations of terrain: a half-space, triangles, and a rapier world.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::support::GROUND;
 use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_fight::actions::BOW;

@@ -1,8 +1,6 @@
 //! A thousand runs of random inputs, some of them invalid: they end in typed errors or finite states, without a panic,
 //! and repeat with the same bits. Also the same fight with creatures of other sizes, and far from the origin.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::support::{GROUND, Slab, weak_point};
 use clamber_climber::{Blow, ClimberInput};
 use clamber_colossus::CreatureConfig;

@@ -7,7 +7,7 @@ use clamber_surface::rig::Playback;
 use clamber_surface::surface::SkinnedSurface;
 use serde_json::{Value, json};
 
-use crate::builder::File;
+use crate::builder::{File, remove};
 
 /// Poses a rig in the middle of every clip, as a user would: a rig that was loaded must not panic later.
 fn use_rig(model: &Model) {
@@ -25,20 +25,9 @@ fn use_rig(model: &Model) {
 #[test]
 fn data_that_is_read_many_times_is_refused_before_memory_runs_out() {
     let mut file = File::square();
-    let vertices = 4_998;
-    let many = vec![0.5f32; vertices * 3];
-    let positions = file.floats("VEC3", &many);
-    file.json["accessors"][positions]["min"] = json!([0.5, 0.5, 0.5]);
-    file.json["accessors"][positions]["max"] = json!([0.5, 0.5, 0.5]);
-    let joints = file.accessor("VEC4", 5121, vertices, &vec![0; vertices * 4]);
-    let weights = file.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(vertices));
-    let primitive = json!({"attributes": {
-        "POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights
-    }});
-    let primitives = file.json["meshes"][0]["primitives"].as_array_mut().unwrap();
-    primitives.extend(vec![primitive; 2_000]);
-    let error = file.load().unwrap_err();
-    assert!(error.to_string().contains("more than once"), "{error}");
+    let primitive = file.primitive_on(0, &[[0.5; 3]; 4_998]);
+    file.primitives().extend(vec![primitive; 2_000]);
+    file.assert_refused("more than once");
 
     // A sparse accessor without a buffer view claims a huge count without data.
     let mut file = File::square();
@@ -52,47 +41,34 @@ fn data_that_is_read_many_times_is_refused_before_memory_runs_out() {
             "indices": {"bufferView": 3, "componentType": 5123}
         }),
     );
-    let error = file.load().unwrap_err();
-    assert!(error.to_string().contains("more memory"), "{error}");
+    file.assert_refused("more memory");
 }
 
 #[test]
 fn data_that_is_small_in_a_file_but_large_in_memory_is_refused() {
-    let refused = |file: &File, what: &str| {
-        let error = file.load().unwrap_err().to_string();
-        assert!(error.contains("more memory"), "{what}: {error}");
-    };
     // Every node shows every primitive.
     let mut file = File::square();
     let points = json!({"attributes": {"POSITION": 0}, "mode": 0});
-    let primitives = file.json["meshes"][0]["primitives"].as_array_mut().unwrap();
-    primitives.extend(vec![points; 1_000]);
+    file.primitives().extend(vec![points; 1_000]);
     for _ in 0..1_000 {
         file.node_under(1, json!({"mesh": 0}));
     }
-    refused(&file, "primitives of many nodes");
+    file.assert_refused("more memory");
 
     let mut file = File::square();
     file.json["meshes"][0]["weights"] = json!(vec![0; 20_000]);
     for _ in 0..2_000 {
         file.node_under(1, json!({"mesh": 0}));
     }
-    let error = file.load().unwrap_err().to_string();
-    assert!(
-        error.contains("0 morph targets, but 20000 weights"),
-        "{error}"
-    );
+    file.assert_refused("0 morph targets, but 20000 weights");
 
+    // A long name of many joints.
     let mut file = File::square();
     file.json["nodes"][1]["name"] = json!("x".repeat(100_000));
-    let binds = file.accessor(
-        "MAT4",
-        5126,
-        600,
-        &(0..600 * 64).map(|k| (k % 61) as u8).collect::<Vec<_>>(),
-    );
+    let binds: Vec<u8> = (0..600 * 64).map(|k| (k % 61) as u8).collect();
+    let binds = file.accessor("MAT4", 5126, 600, &binds);
     file.json["skins"][0] = json!({"joints": vec![1; 600], "inverseBindMatrices": binds});
-    refused(&file, "a long name of many joints");
+    file.assert_refused("more memory");
 }
 
 /// Loads files that take as much memory as they can: a large mesh, shown by as many nodes as the options allow, and by
@@ -110,15 +86,11 @@ fn the_greediest_file_stays_within_its_bounds() {
     file.json["meshes"][0]["primitives"] = json!([{"attributes": {"POSITION": positions}}]);
     let zeros = json!({"componentType": 5126, "count": vertices, "type": "VEC3"});
     let zeros = file.push("accessors", zeros);
-    let flat = file.push(
-        "meshes",
-        json!({"primitives": [{"attributes": {"POSITION": zeros}}]}),
-    );
+    let flat = json!({"primitives": [{"attributes": {"POSITION": zeros}}]});
+    let flat = file.push("meshes", flat);
     // A strip makes two triangles of each vertex, which the limit allows.
-    let strip = file.push(
-        "meshes",
-        json!({"primitives": [{"attributes": {"POSITION": positions}, "mode": 5}]}),
-    );
+    let strip = json!({"primitives": [{"attributes": {"POSITION": positions}, "mode": 5}]});
+    let strip = file.push("meshes", strip);
     for mesh in [0, flat, strip] {
         for limit in [0, 5 * vertices] {
             let mut greedy = File {
@@ -126,7 +98,7 @@ fn the_greediest_file_stays_within_its_bounds() {
                 bytes: file.bytes.clone(),
             };
             greedy.json["nodes"][3] = json!({"mesh": mesh});
-            greedy.json.as_object_mut().unwrap().remove("skins");
+            remove(&mut greedy.json, "skins");
             let options = LoadOptions::default().with_max_repeated_vertices(limit);
             let (mut worst, mut nodes) = (0.0f64, 1);
             let refusal = loop {
@@ -162,8 +134,7 @@ fn sparse_accessors_cannot_replace_more_elements_than_there_are() {
         "count": 5, "indices": {"bufferView": indices, "componentType": 5121},
         "values": {"bufferView": values}
     });
-    let error = file.load().unwrap_err().to_string();
-    assert!(error.contains("replaces 5 of 4 elements"), "{error}");
+    file.assert_refused("replaces 5 of 4 elements");
     file.json["accessors"][0]["sparse"]["count"] = json!(1);
     let moved = file.load().unwrap().rig.collider.positions()[0];
     assert_eq!(moved, glam::Vec3::splat(0.5));

@@ -1,6 +1,6 @@
 //! Builds small files in code.
 
-use clamber_gltf::{GltfErrorKind, LoadOptions, Model, load_slice};
+use clamber_gltf::{GltfErrorKind, LoadOptions, Model, load_all, load_slice};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::Playback;
 use clamber_surface::surface::SkinnedSurface;
@@ -89,6 +89,25 @@ impl File {
         index
     }
 
+    /// Appends vertices that follow one joint alone; returns a primitive of them.
+    pub(crate) fn primitive_on(&mut self, joint: u8, points: &[[f32; 3]]) -> Value {
+        let count = points.len();
+        let positions = self.positions(points);
+        let joints = self.accessor("VEC4", 5121, count, &[joint, 0, 0, 0].repeat(count));
+        let weights = self.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(count));
+        json!({"attributes": {"POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights}})
+    }
+
+    /// The attributes of the square's primitive.
+    pub(crate) fn attributes(&mut self) -> &mut Value {
+        &mut self.json["meshes"][0]["primitives"][0]["attributes"]
+    }
+
+    /// The primitives of the square's mesh.
+    pub(crate) fn primitives(&mut self) -> &mut Vec<Value> {
+        self.json["meshes"][0]["primitives"].as_array_mut().unwrap()
+    }
+
     /// Appends to an array of the document; returns the index.
     pub(crate) fn push(&mut self, array: &str, value: Value) -> usize {
         if self.json.get(array).is_none() {
@@ -110,14 +129,9 @@ impl File {
     /// Appends a node under another one; returns its index.
     pub(crate) fn node_under(&mut self, parent: usize, node: Value) -> usize {
         let index = self.push("nodes", node);
-        let parent = &mut self.json["nodes"][parent];
-        if parent.get("children").is_none() {
-            parent["children"] = json!([]);
-        }
-        parent["children"]
-            .as_array_mut()
-            .unwrap()
-            .push(json!(index));
+        let parent = self.json["nodes"][parent].as_object_mut().unwrap();
+        let children = parent.entry("children").or_insert_with(|| json!([]));
+        children.as_array_mut().unwrap().push(json!(index));
         index
     }
 
@@ -134,14 +148,11 @@ impl File {
             "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len()
         });
         self.bytes.extend_from_slice(bytes);
-        let views = self.json["bufferViews"].as_array_mut().unwrap();
-        views.push(view);
+        let view = self.push("bufferViews", view);
         let accessor = json!({
-            "bufferView": views.len() - 1, "componentType": component, "count": count, "type": kind
+            "bufferView": view, "componentType": component, "count": count, "type": kind
         });
-        let accessors = self.json["accessors"].as_array_mut().unwrap();
-        accessors.push(accessor);
-        accessors.len() - 1
+        self.push("accessors", accessor)
     }
 
     /// The file as a GLB.
@@ -161,8 +172,33 @@ impl File {
     }
 
     pub(crate) fn load(&self) -> Result<Model, GltfErrorKind> {
-        load_slice(&self.glb(), &LoadOptions::default()).map_err(|error| error.kind)
+        self.load_with(&LoadOptions::default())
     }
+
+    pub(crate) fn load_with(&self, options: &LoadOptions) -> Result<Model, GltfErrorKind> {
+        load_slice(&self.glb(), options).map_err(|error| error.kind)
+    }
+
+    /// All creatures of the file, loaded from a temporary path that contains `name`.
+    pub(crate) fn load_all(&self, name: &str) -> Vec<Model> {
+        let path = std::env::temp_dir().join(format!("clamber-{name}-{}.glb", std::process::id()));
+        std::fs::write(&path, self.glb()).unwrap();
+        let models = load_all(&path, &LoadOptions::default());
+        std::fs::remove_file(&path).unwrap();
+        models.unwrap()
+    }
+
+    /// Asserts that the file is refused with an error that contains a text.
+    #[track_caller]
+    pub(crate) fn assert_refused(&self, text: &str) {
+        let error = self.load().unwrap_err().to_string();
+        assert!(error.contains(text), "{error}");
+    }
+}
+
+/// Removes a member of a JSON object.
+pub(crate) fn remove(object: &mut Value, member: &str) {
+    object.as_object_mut().unwrap().remove(member);
 }
 
 fn glb_of(json: &[u8], bin: &[u8]) -> Vec<u8> {

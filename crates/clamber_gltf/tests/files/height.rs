@@ -1,6 +1,6 @@
 //! Creatures that are scaled to a height.
 
-use clamber_gltf::{GltfErrorKind, LoadOptions, Model, load_slice};
+use clamber_gltf::{GltfErrorKind, LoadOptions, Model};
 use clamber_surface::rig::Playback;
 use glam::Vec3;
 use serde_json::json;
@@ -24,32 +24,22 @@ fn moving_square() -> File {
     ]);
     let sizes = file.floats("VEC3", &[1.0, 1.0, 1.0, 2.0, 0.5, 3.0]);
     let animation = &mut file.json["animations"][0];
-    for (sampler, (output, interpolation)) in [
-        (two, "LINEAR"),
-        (two, "STEP"),
-        (spline, "CUBICSPLINE"),
-        (sizes, "LINEAR"),
-    ]
-    .into_iter()
-    .enumerate()
-    {
+    for (sampler, output, interpolation, node, path) in [
+        (1, two, "LINEAR", 2, "translation"),
+        (2, two, "STEP", 0, "translation"),
+        (3, spline, "CUBICSPLINE", 1, "translation"),
+        (4, sizes, "LINEAR", 1, "scale"),
+    ] {
         let samplers = animation["samplers"].as_array_mut().unwrap();
         samplers.push(json!({"input": times, "output": output, "interpolation": interpolation}));
-        let (node, path) = [
-            (2, "translation"),
-            (0, "translation"),
-            (1, "translation"),
-            (1, "scale"),
-        ][sampler];
         let channels = animation["channels"].as_array_mut().unwrap();
-        channels.push(json!({"sampler": sampler + 1, "target": {"node": node, "path": path}}));
+        channels.push(json!({"sampler": sampler, "target": {"node": node, "path": path}}));
     }
     file
 }
 
 fn with_height(file: &File, height: f32) -> Result<Model, GltfErrorKind> {
-    let options = LoadOptions::default().with_height(height);
-    load_slice(&file.glb(), &options).map_err(|error| error.kind)
+    file.load_with(&LoadOptions::default().with_height(height))
 }
 
 /// All vertices at a time of the first clip, or at rest.

@@ -5,7 +5,7 @@ use std::io;
 use clamber_gltf::{GltfErrorKind, LoadOptions, load_slice_with};
 use serde_json::json;
 
-use crate::builder::File;
+use crate::builder::{File, remove};
 
 /// A document whose buffers are at these URIs. The last one has the data.
 fn document(file: &File, uris: &[(&str, usize)]) -> Vec<u8> {
@@ -129,7 +129,7 @@ fn bytes_beyond_the_buffers_do_not_raise_the_limit_of_memory() {
     let zeros = file.push("accessors", zeros);
     file.json["meshes"][0]["primitives"] = json!([{"attributes": {"POSITION": zeros}}]);
     file.json["nodes"][3] = json!({"mesh": 0});
-    file.json.as_object_mut().unwrap().remove("skins");
+    remove(&mut file.json, "skins");
     let document = document(&file, &[("data.bin", file.bytes.len())]);
     let loaded = load_slice_with(&document, &LoadOptions::default(), |_| {
         let mut bytes = file.bytes.clone();

@@ -1,9 +1,9 @@
 //! Which scene of a file is loaded.
 
-use clamber_gltf::{GltfErrorKind, ImportWarning, LoadOptions, Model, load_all, load_slice};
+use clamber_gltf::{GltfErrorKind, ImportWarning, LoadOptions, Model};
 use serde_json::json;
 
-use crate::builder::File;
+use crate::builder::{File, remove};
 
 /// Two squares in scenes of their own, 1 and 2; scene 0 is empty, and a third square is in no scene.
 fn two_scenes() -> File {
@@ -11,7 +11,7 @@ fn two_scenes() -> File {
     let second = file.push("nodes", json!({"name": "second", "mesh": 0}));
     file.push("nodes", json!({"name": "third", "mesh": 0}));
     file.json["scenes"] = json!([{}, {"nodes": [0]}, {"nodes": [second], "name": "other"}]);
-    file.json.as_object_mut().unwrap().remove("scene");
+    remove(&mut file.json, "scene");
     file
 }
 
@@ -19,15 +19,10 @@ fn names(model: &Model) -> Vec<&str> {
     model.visual.iter().map(|mesh| mesh.name.as_str()).collect()
 }
 
-fn load(file: &File, options: &LoadOptions) -> Result<Model, GltfErrorKind> {
-    load_slice(&file.glb(), options).map_err(|error| error.kind)
-}
-
 #[test]
 fn the_default_scene_is_loaded_or_the_first_with_a_mesh_or_the_wanted_one() {
     let mut file = two_scenes();
-    let options = LoadOptions::default();
-    let model = load(&file, &options).unwrap();
+    let model = file.load().unwrap();
     assert_eq!(names(&model), ["body"]);
     let warning = ImportWarning::HiddenMeshes {
         scene: 1,
@@ -41,19 +36,19 @@ fn the_default_scene_is_loaded_or_the_first_with_a_mesh_or_the_wanted_one() {
     );
 
     // A skin that no shown mesh uses is no creature.
-    let model = load(&file, &options.clone().with_scene(2)).unwrap();
-    assert_eq!(names(&model), ["second"]);
+    let in_scene = |file: &File, scene| {
+        let model = file.load_with(&LoadOptions::default().with_scene(scene));
+        names(&model.unwrap()).join(" ")
+    };
+    assert_eq!(in_scene(&file, 2), "second");
     file.json["scene"] = json!(2);
-    assert_eq!(names(&load(&file, &options).unwrap()), ["second"]);
-    assert_eq!(
-        names(&load(&file, &options.clone().with_scene(1)).unwrap()),
-        ["body"]
-    );
+    assert_eq!(names(&file.load().unwrap()), ["second"]);
+    assert_eq!(in_scene(&file, 1), "body");
 
     // Without scenes everything is shown.
-    file.json.as_object_mut().unwrap().remove("scene");
-    file.json.as_object_mut().unwrap().remove("scenes");
-    let model = load(&file, &options).unwrap();
+    remove(&mut file.json, "scene");
+    remove(&mut file.json, "scenes");
+    let model = file.load().unwrap();
     assert_eq!(names(&model), ["body"]);
     let warning = ImportWarning::MeshesWithoutJoint { meshes: 2 };
     assert_eq!(model.report.warnings, [warning]);
@@ -91,7 +86,7 @@ fn empty_scenes_are_no_error_and_a_scene_without_a_mesh_says_which_has_one() {
 
     // A file without any mesh has another error.
     for node in file.json["nodes"].as_array_mut().unwrap() {
-        node.as_object_mut().unwrap().remove("mesh");
+        remove(node, "mesh");
     }
     let error = file.load().unwrap_err();
     assert!(
@@ -132,7 +127,7 @@ fn many_scenes_of_many_nodes_load_in_one_pass() {
 fn scenes_that_do_not_exist_are_refused() {
     let file = two_scenes();
     let options = LoadOptions::default().with_scene(3);
-    let error = load(&file, &options).unwrap_err();
+    let error = file.load_with(&options).unwrap_err();
     assert!(
         matches!(
             error,
@@ -146,8 +141,7 @@ fn scenes_that_do_not_exist_are_refused() {
     for scene in [json!(3), json!(-1), json!("first")] {
         let mut file = two_scenes();
         file.json["scene"] = scene;
-        let error = file.load().unwrap_err().to_string();
-        assert!(error.contains("the default scene: is"), "{error}");
+        file.assert_refused("the default scene: is");
     }
     // The nodes of the loaded scene are checked; the nodes of other scenes are never read.
     for (nodes, text) in [
@@ -157,9 +151,8 @@ fn scenes_that_do_not_exist_are_refused() {
         let mut file = two_scenes();
         file.json["scenes"][2]["nodes"] = nodes;
         assert!(file.load().is_ok());
-        let error = load(&file, &LoadOptions::default().with_scene(2))
-            .unwrap_err()
-            .to_string();
+        let error = file.load_with(&LoadOptions::default().with_scene(2));
+        let error = error.unwrap_err().to_string();
         assert!(error.contains(text), "{error}");
     }
 }
@@ -170,18 +163,8 @@ fn all_creatures_are_those_of_the_scene() {
     let second = file.push("nodes", json!({"name": "bone"}));
     let skin = file.push("skins", json!({"joints": [second, second]}));
     let mesh = file.push("nodes", json!({"name": "pet", "mesh": 0, "skin": skin}));
-    let folder = std::env::temp_dir().join("clamber_scenes_of_a_file");
-    std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join(format!("{}.glb", std::process::id()));
-    let mut counts = Vec::new();
-    for scenes in [
-        json!([{"nodes": [0]}]),
-        json!([{"nodes": [0, second, mesh]}]),
-    ] {
-        file.json["scenes"] = scenes;
-        std::fs::write(&path, file.glb()).unwrap();
-        counts.push(load_all(&path, &LoadOptions::default()).unwrap().len());
+    for (nodes, creatures) in [(json!([0]), 1), (json!([0, second, mesh]), 2)] {
+        file.json["scenes"] = json!([{"nodes": nodes}]);
+        assert_eq!(file.load_all("scenes").len(), creatures, "{nodes}");
     }
-    std::fs::remove_file(&path).unwrap();
-    assert_eq!(counts, [1, 2]);
 }

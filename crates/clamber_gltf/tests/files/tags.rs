@@ -1,10 +1,10 @@
 //! Tags from the file and from the caller.
 
-use clamber_gltf::{ImportWarning, LoadOptions, Model, load_slice};
+use clamber_gltf::{ImportWarning, LoadOptions, Model};
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 use serde_json::json;
 
-use crate::builder::File;
+use crate::builder::{File, remove};
 
 /// A file of three primitives: with the square's unnamed fur material, with "horn", and without a material.
 fn three() -> File {
@@ -15,22 +15,20 @@ fn three() -> File {
         let at = |x, y| [x, y, height];
         let points = [at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)];
         let positions = file.positions(&points);
-        let primitives = file.json["meshes"][0]["primitives"].as_array_mut().unwrap();
         let mut primitive = json!({"attributes": {"POSITION": positions}});
         if height == 1.0 {
             primitive["material"] = json!(1);
         }
-        primitives.push(primitive);
+        file.primitives().push(primitive);
     }
     // The meshes are rigid, so positions suffice.
-    file.json.as_object_mut().unwrap().remove("skins");
-    let body = file.json["nodes"][3].as_object_mut().unwrap();
-    body.remove("skin");
+    remove(&mut file.json, "skins");
+    remove(&mut file.json["nodes"][3], "skin");
     file
 }
 
 fn load(options: &LoadOptions) -> Model {
-    load_slice(&three().glb(), options).unwrap()
+    three().load_with(options).unwrap()
 }
 
 /// The tags of the collider, after checking that the visual meshes have the same.
@@ -82,7 +80,7 @@ fn marks_of_ledges_are_ignored_with_a_warning() {
     for material in [0, 1] {
         file.json["materials"][material]["extras"]["clamber"]["ledge"] = json!(1);
     }
-    let model = load_slice(&file.glb(), &LoadOptions::default()).unwrap();
+    let model = file.load_with(&LoadOptions::default()).unwrap();
     assert_eq!(tags(&model), tags(&load(&LoadOptions::default())));
     let ledges = ImportWarning::Ledges { materials: 2 };
     assert!(

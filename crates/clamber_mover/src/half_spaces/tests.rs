@@ -4,25 +4,32 @@ use fastrand::Rng;
 /// Number of halvings in the search for the least relief, from the largest gap down to its rounding.
 const HALVINGS: usize = 50;
 
+/// The half space above a plane.
+fn above(normal: DVec3, offset: f64) -> MovePlane {
+    MovePlane { normal, offset }
+}
+
+/// How far a point is below the plane that it is farthest below; 0 above all planes.
+fn missed(planes: &[MovePlane], point: DVec3) -> f64 {
+    let missed = planes.iter().map(|p| p.offset - p.normal.dot(point));
+    missed.fold(0.0, f64::max)
+}
+
 /// The brute-force reference: among all points that up to three planes determine, the nearest above all the other
 /// planes. If no such point exists, the planes are lowered until one does.
 fn project_onto_half_spaces_reference(target: DVec3, planes: &[MovePlane]) -> Projection {
-    let size = planes.iter().fold(0.0, |most: f64, plane| {
-        most.max(plane.offset - plane.normal.dot(target))
-    });
+    let size = missed(planes, target);
     if size == 0.0 {
         return Projection {
             point: target,
             missed: 0.0,
         };
     }
-    let walls: Vec<Wall> = planes
-        .iter()
-        .map(|plane| Wall {
-            normal: plane.normal,
-            gap: (plane.offset - plane.normal.dot(target)) / size,
-        })
-        .collect();
+    let wall = |plane: &MovePlane| Wall {
+        normal: plane.normal,
+        gap: (plane.offset - plane.normal.dot(target)) / size,
+    };
+    let walls: Vec<Wall> = planes.iter().map(wall).collect();
     let sound = |relief: f64| {
         let point = nearest_of_all(&walls, relief)?;
         let probe = PROBE * (1.0 + point.length());
@@ -41,31 +48,25 @@ fn project_onto_half_spaces_reference(target: DVec3, planes: &[MovePlane]) -> Pr
         }
         sound(high).unwrap_or(DVec3::ZERO)
     });
-    let missed = walls
-        .iter()
-        .fold(0.0, |most: f64, wall| most.max(wall.missed(point)));
+    let missed = walls.iter().map(|wall| wall.missed(point));
     Projection {
         point: target + point * size,
-        missed: missed * size,
+        missed: missed.fold(0.0, f64::max) * size,
     }
 }
 
 fn nearest_of_all(walls: &[Wall], relief: f64) -> Option<DVec3> {
-    let walls: Vec<Wall> = walls
-        .iter()
-        .map(|wall| Wall {
-            gap: wall.gap - relief,
-            ..*wall
-        })
-        .collect();
+    let lowered = |wall: &Wall| Wall {
+        gap: wall.gap - relief,
+        ..*wall
+    };
+    let walls: Vec<Wall> = walls.iter().map(lowered).collect();
     let mut best: Option<DVec3> = None;
     let mut consider = |point: DVec3| {
         let slack = HELD * (1.0 + point.length());
         let nearer = best.is_none_or(|best| point.length() < best.length());
-        if nearer
-            && point.length() <= STEEPEST
-            && walls.iter().all(|wall| wall.missed(point) <= slack)
-        {
+        let is_above = |wall: &Wall| wall.missed(point) <= slack;
+        if nearer && point.length() <= STEEPEST && walls.iter().all(is_above) {
             best = Some(point);
         }
     };
@@ -74,24 +75,13 @@ fn nearest_of_all(walls: &[Wall], relief: f64) -> Option<DVec3> {
         consider(a.normal * a.gap);
         for (j, b) in walls.iter().enumerate().take(i) {
             let crease = a.normal.cross(b.normal);
-            consider(refined(
-                &[a, b],
-                [
-                    b.normal.cross(crease) / crease.length_squared(),
-                    crease.cross(a.normal) / crease.length_squared(),
-                    DVec3::ZERO,
-                ],
-            ));
+            let lift = [b.normal.cross(crease), crease.cross(a.normal)];
+            let lift = lift.map(|lift| lift / crease.length_squared());
+            consider(refined(&[a, b], &lift));
             for c in walls.iter().take(j) {
                 let volume = crease.dot(c.normal);
-                consider(refined(
-                    &[a, b, c],
-                    [
-                        b.normal.cross(c.normal) / volume,
-                        c.normal.cross(a.normal) / volume,
-                        crease / volume,
-                    ],
-                ));
+                let lift = [b.normal.cross(c.normal), c.normal.cross(a.normal), crease];
+                consider(refined(&[a, b, c], &lift.map(|lift| lift / volume)));
             }
         }
     }
@@ -100,13 +90,11 @@ fn nearest_of_all(walls: &[Wall], relief: f64) -> Option<DVec3> {
 
 /// The point on all walls. `lift` holds, for each wall, a step that raises the point by 1 from this wall alone. The
 /// steps are repeated, since they are rounded.
-fn refined(walls: &[&Wall], lift: [DVec3; 3]) -> DVec3 {
+fn refined(walls: &[&Wall], lift: &[DVec3]) -> DVec3 {
     let mut point = DVec3::ZERO;
     for _ in 0..4 {
-        let steps = walls
-            .iter()
-            .zip(lift)
-            .map(|(wall, lift)| lift * wall.missed(point));
+        let steps = walls.iter().zip(lift);
+        let steps = steps.map(|(wall, lift)| *lift * wall.missed(point));
         point += steps.sum::<DVec3>();
     }
     point
@@ -148,28 +136,19 @@ fn with_room(rng: &mut Rng, normals: &[DVec3]) -> Vec<MovePlane> {
     let inside = direction(rng) * rng.f64();
     let plane = |&normal: &DVec3| {
         let margin = [0.0, 1e-12, 0.1, 0.5][rng.usize(..4)] * rng.f64();
-        MovePlane {
-            normal,
-            offset: normal.dot(inside) - margin,
-        }
+        above(normal, normal.dot(inside) - margin)
     };
     normals.iter().map(plane).collect()
 }
 
 fn anyhow(rng: &mut Rng, normals: &[DVec3]) -> Vec<MovePlane> {
-    let plane = |&normal: &DVec3| MovePlane {
-        normal,
-        offset: rng.f64() * 2.0 - 1.0,
-    };
+    let plane = |&normal: &DVec3| above(normal, rng.f64() * 2.0 - 1.0);
     normals.iter().map(plane).collect()
 }
 
 fn size(target: DVec3, planes: &[MovePlane], found: &Projection) -> f64 {
-    planes
-        .iter()
-        .fold(target.length().max(found.point.length()), |most, plane| {
-            most.max(plane.offset.abs())
-        })
+    let offsets = planes.iter().map(|plane| plane.offset.abs());
+    offsets.fold(target.length().max(found.point.length()), f64::max)
 }
 
 /// Compares with the reference. The weighted sum of violation and distance is compared in every case; each of them
@@ -180,27 +159,13 @@ fn check(target: DVec3, planes: &[MovePlane]) {
     let slack = 1e-9 * size(target, planes, &found);
     let [far, least] = [found, sought].map(|above| above.point.distance(target));
     let context = || format!("{found:?} against {sought:?}\ntarget {target:?}\nplanes {planes:?}");
-    assert!(
-        found.point.is_finite() && found.missed.is_finite(),
-        "{}",
-        context()
-    );
-    let missed = planes
-        .iter()
-        .map(|plane| plane.offset - plane.normal.dot(found.point));
-    assert!(
-        (missed.fold(0.0, f64::max) - found.missed).abs() <= 1e-15,
-        "`missed` is wrong: {}",
-        context()
-    );
+    let is_finite = found.point.is_finite() && found.missed.is_finite();
+    assert!(is_finite, "{}", context());
+    let off = (missed(planes, found.point) - found.missed).abs();
+    assert!(off <= 1e-15, "`missed` is wrong: {}", context());
     let weighed = |missed: f64, far: f64| missed + far / STEEPEST;
-    let (own, others) = (weighed(found.missed, far), weighed(sought.missed, least));
-    assert!(
-        (own - others).abs() <= slack,
-        "worse by {:e}: {}",
-        own - others,
-        context()
-    );
+    let worse = weighed(found.missed, far) - weighed(sought.missed, least);
+    assert!(worse.abs() <= slack, "worse by {worse:e}: {}", context());
     if sought.missed <= 1e-14 {
         assert!(found.missed <= slack, "violates a plane: {}", context());
         assert!(far <= least + slack, "too far: {}", context());
@@ -259,11 +224,8 @@ fn the_order_of_planes_changes_no_bit() {
     for case in 0..3000 {
         let count = rng.usize(2..=17);
         let normals = normals(&mut rng, count);
-        let mut planes = if case % 3 == 0 {
-            anyhow(&mut rng, &normals)
-        } else {
-            with_room(&mut rng, &normals)
-        };
+        let make = [anyhow, with_room, with_room][case % 3];
+        let mut planes = make(&mut rng, &normals);
         let target = direction(&mut rng);
         let first = project_onto_half_spaces(target, &planes);
         rng.shuffle(&mut planes);
@@ -279,28 +241,20 @@ fn results_scale_with_the_input() {
         let count = rng.usize(1..=12);
         // Random directions only: additional rounding must not turn a wedge into a wall.
         let normals: Vec<DVec3> = (0..count).map(|_| direction(&mut rng)).collect();
-        let planes = if case % 3 == 0 {
-            anyhow(&mut rng, &normals)
-        } else {
-            with_room(&mut rng, &normals)
-        };
+        let make = [anyhow, with_room, with_room][case % 3];
+        let planes = make(&mut rng, &normals);
         let target = direction(&mut rng);
         let found = project_onto_half_spaces(target, &planes);
         let scaled = |scale: f64| {
-            let scaled = planes.iter().map(|plane| MovePlane {
-                offset: plane.offset * scale,
-                ..*plane
-            });
+            let planes = planes.iter();
+            let scaled = planes.map(|plane| above(plane.normal, plane.offset * scale));
             project_onto_half_spaces(target * scale, &scaled.collect::<Vec<_>>())
         };
         for scale in [f64::from(1 << 20), 1.0 / f64::from(1 << 20)] {
             let other = scaled(scale);
-            let (point, missed) = (found.point * scale, found.missed * scale);
-            assert_eq!(
-                (other.point, other.missed),
-                (point, missed),
-                "{target:?} {planes:?}"
-            );
+            let wanted = (found.point * scale, found.missed * scale);
+            let found = (other.point, other.missed);
+            assert_eq!(found, wanted, "{target:?} {planes:?}");
         }
         // At the limit of a wedge, rounded offsets move the point by the square root of the rounding.
         let share = if found.missed < 1e-12 { 1e-9 } else { 2e-5 };
@@ -316,10 +270,7 @@ fn results_scale_with_the_input() {
 }
 
 fn planes<const N: usize>(planes: [([f64; 3], f64); N]) -> [MovePlane; N] {
-    planes.map(|(normal, offset)| MovePlane {
-        normal: DVec3::from_array(normal).normalize(),
-        offset,
-    })
+    planes.map(|(normal, offset)| above(DVec3::from_array(normal).normalize(), offset))
 }
 
 #[track_caller]
@@ -404,10 +355,7 @@ fn cones_of_many_planes_have_one_apex() {
             .map(|k| {
                 let angle = f64::from(k) * 0.2;
                 let normal = DVec3::new(tilt * libm::cos(angle), 1.0, tilt * libm::sin(angle));
-                MovePlane {
-                    normal: normal.normalize(),
-                    offset: 0.0,
-                }
+                above(normal.normalize(), 0.0)
             })
             .collect();
         let found = project_onto_half_spaces(DVec3::new(0.0, -1.0, 0.0), &cone);
@@ -420,28 +368,17 @@ fn cones_of_many_planes_have_one_apex() {
 
 #[test]
 fn invalid_half_spaces_are_ignored() {
-    let mut all = vec![MovePlane {
-        normal: DVec3::Y,
-        offset: 1.0,
-    }];
-    for normal in [
-        DVec3::ZERO,
-        DVec3::NAN,
-        DVec3::INFINITY,
-        DVec3::X * 1e-200,
-        DVec3::X * 1e200,
-    ] {
-        all.push(MovePlane {
-            normal,
-            offset: 1.0,
-        });
-    }
-    for offset in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        all.push(MovePlane {
-            normal: DVec3::X,
-            offset,
-        });
-    }
+    let all = [
+        above(DVec3::Y, 1.0),
+        above(DVec3::ZERO, 1.0),
+        above(DVec3::NAN, 1.0),
+        above(DVec3::INFINITY, 1.0),
+        above(DVec3::X * 1e-200, 1.0),
+        above(DVec3::X * 1e200, 1.0),
+        above(DVec3::X, f64::NAN),
+        above(DVec3::X, f64::INFINITY),
+        above(DVec3::X, f64::NEG_INFINITY),
+    ];
     expect([0.0; 3], &all, [0.0, 1.0, 0.0], 0.0);
 }
 
@@ -455,10 +392,7 @@ fn extremes_stay_finite() {
         let count = rng.usize(1..=6);
         let planes: Vec<MovePlane> = normals(&mut rng, count)
             .into_iter()
-            .map(|normal| MovePlane {
-                normal,
-                offset: sizes[rng.usize(..sizes.len())],
-            })
+            .map(|normal| above(normal, sizes[rng.usize(..sizes.len())]))
             .collect();
         let target = direction(&mut rng) * sizes[rng.usize(..sizes.len())];
         let found = project_onto_half_spaces(target, &planes);
@@ -479,20 +413,15 @@ struct Worth<'a> {
 
 impl Worth<'_> {
     fn cost(&self, point: DVec3) -> f64 {
-        let missed = self
-            .planes
-            .iter()
-            .map(|plane| plane.offset - plane.normal.dot(point));
-        point.distance(self.target).max(self.free) + self.steepest * missed.fold(0.0, f64::max)
+        let far = point.distance(self.target).max(self.free);
+        far + self.steepest * missed(self.planes, point)
     }
 
     /// The least cost, by ternary search over the relief, in which the cost is convex. The reference finds each point.
     fn least(&self, gap: f64) -> f64 {
         let cost = |relief: f64| {
-            let lowered = self.planes.iter().map(|plane| MovePlane {
-                offset: plane.offset - relief,
-                ..*plane
-            });
+            let planes = self.planes.iter();
+            let lowered = planes.map(|plane| above(plane.normal, plane.offset - relief));
             let lowered: Vec<MovePlane> = lowered.collect();
             self.cost(project_onto_half_spaces_reference(self.target, &lowered).point)
         };
@@ -505,10 +434,8 @@ impl Worth<'_> {
                 low = thirds[0];
             }
         }
-        [0.0, low, high, gap]
-            .map(cost)
-            .into_iter()
-            .fold(f64::INFINITY, f64::min)
+        let costs = [0.0, low, high, gap].map(cost).into_iter();
+        costs.fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -521,10 +448,7 @@ fn no_other_point_has_a_lower_cost() {
             let normals = normals(&mut rng, count);
             let planes = anyhow(&mut rng, &normals);
             let target = direction(&mut rng) * rng.f64();
-            let gaps = planes
-                .iter()
-                .map(|plane| plane.offset - plane.normal.dot(target));
-            let gap = gaps.fold(0.0, f64::max);
+            let gap = missed(&planes, target);
             let free = [0.0, gap * rng.f64(), gap * 3.0 * rng.f64()][rng.usize(..3)];
             let steepest = 1.1 + 5.0 * rng.f64();
             let worth = Worth {
@@ -537,26 +461,16 @@ fn no_other_point_has_a_lower_cost() {
             let told = || format!("{found:?}\n{target} {free} {steepest} {planes:?}");
             let cost = worth.cost(found.point);
             let least = worth.least(gap);
-            assert!(
-                cost <= least + 1e-8 * (gap + free),
-                "{cost} for {least}: {}",
-                told()
-            );
+            let slack = 1e-8 * (gap + free);
+            assert!(cost <= least + slack, "{cost} for {least}: {}", told());
             for _ in 0..200 {
                 let other = found.point + direction(&mut rng) * gap * libm::exp(-20.0 * rng.f64());
                 let other = worth.cost(other);
-                assert!(
-                    cost <= other + 1e-8 * (gap + free),
-                    "{cost} for {other}: {}",
-                    told()
-                );
+                assert!(cost <= other + slack, "{cost} for {other}: {}", told());
             }
             let far = found.point.distance(target);
-            assert!(
-                far <= free + steepest * (gap - found.missed) + 1e-9 * gap,
-                "{far}: {}",
-                told()
-            );
+            let most = free + steepest * (gap - found.missed) + 1e-9 * gap;
+            assert!(far <= most, "{far}: {}", told());
             relieved += u32::from(found.missed > 1e-9 * gap);
             beyond += u32::from(found.missed > 1e-9 * gap && far > free * (1.0 + 1e-9));
         }

@@ -24,11 +24,8 @@ fn boxed(low: Vec3, high: Vec3, size: f64, turn: f64) -> TriangleTerrain {
         [0, 2, 3, 1],
         [4, 5, 7, 6],
     ];
-    let triangles: Vec<[u32; 3]> = faces
-        .iter()
-        .flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]])
-        .collect();
-    TriangleTerrain::new(&positions, &triangles, &[], DVec3::ZERO).unwrap()
+    let triangles = faces.map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    TriangleTerrain::new(&positions, triangles.as_flattened(), &[], DVec3::ZERO).unwrap()
 }
 
 /// Turns a vector about the vertical, as the scene is turned.
@@ -65,6 +62,13 @@ fn asked<T>(
     ask(&mut mover, &hold, position)
 }
 
+/// The ledge ahead of a body that hangs at x 0.3.
+fn ahead(boxes: &[(Vec3, Vec3)], scene: (f64, f64)) -> Option<Ledge> {
+    asked(boxes, scene, 0.3, |mover, hold, at| {
+        mover.ledge_ahead(hold, at)
+    })
+}
+
 /// A wall with its edge at y 0 and z 0, from one x to another.
 fn wall(from: f32, to: f32) -> (Vec3, Vec3) {
     stands(from, to, 0.0, 0.0)
@@ -72,8 +76,7 @@ fn wall(from: f32, to: f32) -> (Vec3, Vec3) {
 
 /// A wall whose edge is higher by `up` and ahead by `back`.
 fn stands(from: f32, to: f32, up: f32, back: f32) -> (Vec3, Vec3) {
-    let (low, high) = (Vec3::new(from, -4.0, -4.0), Vec3::new(to, up, -back));
-    (low, high)
+    (Vec3::new(from, -4.0, -4.0), Vec3::new(to, up, -back))
 }
 
 fn each(check: impl Fn((f64, f64), &str)) {
@@ -92,11 +95,8 @@ fn assert_found(
     told: &str,
 ) {
     let ledge = ledge.unwrap_or_else(|| panic!("{told}: no ledge"));
-    let off = ledge
-        .touch
-        .contact
-        .point
-        .distance(turned(point, turn) * size);
+    let hands = ledge.touch.contact.point;
+    let off = hands.distance(turned(point, turn) * size);
     assert!(off < 2e-3 * size, "{told}: {off} from {point}: {ledge:?}");
     let off = ledge.facing.distance(turned(facing, turn));
     assert!(off < 1e-3, "{told}: {off} from {facing}: {ledge:?}");
@@ -114,22 +114,12 @@ fn a_ledge_goes_on_ahead_up_to_half_a_radius_higher_lower_nearer_and_farther() {
             (0.1, 0.1),
         ] {
             let told = format!("{told}, {up} higher, {back} ahead");
-            let ledge = asked(
-                &[stands(-4.0, 4.0, up, back)],
-                scene,
-                0.3,
-                |mover, hold, at| mover.ledge_ahead(hold, at),
-            );
+            let ledge = ahead(&[stands(-4.0, 4.0, up, back)], scene);
             let point = DVec3::new(0.3, f64::from(up), -0.16 - f64::from(back));
             assert_found(ledge, (point, DVec3::NEG_Z), scene, &told);
         }
         for (up, back) in [(0.24, 0.0), (-0.24, 0.0), (0.0, 0.24), (0.0, -0.24)] {
-            let ledge = asked(
-                &[stands(-4.0, 4.0, up, back)],
-                scene,
-                0.3,
-                |mover, hold, at| mover.ledge_ahead(hold, at),
-            );
+            let ledge = ahead(&[stands(-4.0, 4.0, up, back)], scene);
             assert_eq!(ledge, None, "{told}, {up} higher, {back} ahead");
         }
     });
@@ -140,10 +130,7 @@ fn a_hand_has_room_below_a_low_ceiling_and_none_below_a_lower_one() {
     each(|scene, told| {
         for (gap, fits) in [(0.17, true), (0.1, false)] {
             let ceiling = (Vec3::new(-4.0, gap, -4.0), Vec3::new(4.0, 4.0, 0.0));
-            let boxes = [wall(-4.0, 4.0), ceiling];
-            let ledge = asked(&boxes, scene, 0.3, |mover, hold, at| {
-                mover.ledge_ahead(hold, at)
-            });
+            let ledge = ahead(&[wall(-4.0, 4.0), ceiling], scene);
             assert_eq!(ledge.is_some(), fits, "{told}, a ceiling at {gap}");
         }
     });
@@ -162,10 +149,8 @@ fn hands_reach_across_a_gap_and_not_through_a_pillar() {
         };
         let ledge = beside(&[wall(-4.0, 1.0), wall(1.3, 4.0)], 1.01);
         let found = ledge.map(|ledge| turned(ledge.touch.contact.point, -turn).x / size);
-        assert!(
-            found.is_some_and(|x| (1.3..1.345).contains(&x)),
-            "{told}: {found:?}"
-        );
+        let is_beyond = found.is_some_and(|x| (1.3..1.345).contains(&x));
+        assert!(is_beyond, "{told}: {found:?}");
         let ledge = beside(&[wall(-4.0, 1.0), wall(1.4, 4.0)], 1.01);
         assert_eq!(ledge, None, "{told}: too wide");
         let pillar = stands(1.1, 1.2, 0.5, -0.3);

@@ -39,10 +39,8 @@ impl Obstacle for Ball {
         let c = from.length_squared() - reach * reach;
         let time = (-b - (b * b - a * c).sqrt()) / a;
         let mut found = Vec::new();
-        self.overlap_capsule(
-            &capsule.moved(way * time).with_radius(f64::INFINITY),
-            &mut found,
-        );
+        let there = capsule.moved(way * time).with_radius(f64::INFINITY);
+        self.overlap_capsule(&there, &mut found);
         let contact = found.pop()?;
         (0.0..=1.0).contains(&time).then_some(SweepContact {
             fraction: time,
@@ -117,23 +115,12 @@ fn a_path_that_is_not_finite_leaves_the_body_at_its_start() {
         let vectors = [0, 1, 2].map(|axis| {
             let mut broken = DVec3::ZERO;
             broken[axis] = bad;
-            let target = Path {
-                target: broken,
-                ..path
-            };
-            let frame = Path {
-                frame: broken,
-                ..path
-            };
-            let low = Path {
-                start_axis: [broken, DVec3::ZERO],
-                ..path
-            };
-            let high = Path {
-                start_axis: [DVec3::ZERO, broken],
-                ..path
-            };
-            [target, frame, low, high]
+            let mut paths = [path; 4];
+            paths[0].target = broken;
+            paths[1].frame = broken;
+            paths[2].start_axis[0] = broken;
+            paths[3].start_axis[1] = broken;
+            paths
         });
         for path in paths.into_iter().chain(vectors.into_iter().flatten()) {
             let moved = mover.slide(&path);

@@ -2,10 +2,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 
 use clamber_fight::{Blade, CreatureId, FighterId, ProjectilePlace};
-use foxglove::messages::{
-    ArrowPrimitive, PointCloud, Pose, SceneEntity, SceneUpdate, SpherePrimitive,
-};
-use glam::DVec3;
+use foxglove::messages::{ArrowPrimitive, PointCloud, SceneEntity, SceneUpdate, SpherePrimitive};
+use glam::{DQuat, DVec3};
 
 use super::ArenaInfo;
 use super::recording::LARGEST_TICK;
@@ -14,7 +12,7 @@ use crate::messages::{ArenaTick, Brain};
 use crate::output::Channel;
 use crate::views::{
     ATTACKS, PROJECTILES, Scene, color, deletion, entity, frame_of_climber, from_z_to, left_out,
-    no_skin, rotation, vector, z_up,
+    no_skin, pose, vector, z_up,
 };
 use crate::writing::{EncodeTick, Sheet, Writing};
 use crate::{OfArena, RecordError, RecordingKind, topics};
@@ -158,10 +156,8 @@ impl EncodeTick for ArenaEncoder {
         sheet: &mut Sheet<W>,
     ) -> Result<(), RecordError> {
         if prost::Message::encoded_len(&data.message) > LARGEST_TICK {
-            return Err(RecordError::Encode {
-                topic: topics::ARENA,
-                reason: "a tick of more than 2 MiB, which no reader takes".to_owned(),
-            });
+            let reason = "a tick of more than 2 MiB, which no reader takes";
+            return Err(RecordError::encode(topics::ARENA, reason));
         }
         sheet.output.send_exact(self.tick, &data.message)?;
         if let Some(view) = data.view {
@@ -199,10 +195,7 @@ fn attacks(now: u64, creatures: &[TakenCreature]) -> SceneEntity {
     let mut entity = entity(now, ATTACKS);
     for creature in creatures {
         let ball = |place: DVec3, radius: f64, opacity: f64| SpherePrimitive {
-            pose: Some(Pose {
-                position: Some(vector(place)),
-                orientation: Some(rotation(glam::DQuat::IDENTITY)),
-            }),
+            pose: Some(pose(place, DQuat::IDENTITY)),
             size: Some(vector(DVec3::splat(2.0 * radius))),
             color: Some(color(0.9, 0.5, 0.1, opacity)),
         };
@@ -234,10 +227,7 @@ fn arrow(from: DVec3, to: DVec3, [shaft, head]: [f64; 2], [r, g, b]: [f64; 3]) -
         );
     let point = (0.25 * length).min(0.2);
     ArrowPrimitive {
-        pose: Some(Pose {
-            position: Some(vector(from)),
-            orientation: Some(rotation(turn)),
-        }),
+        pose: Some(pose(from, turn)),
         shaft_length: length - point,
         shaft_diameter: shaft,
         head_length: point,

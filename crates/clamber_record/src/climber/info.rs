@@ -41,10 +41,8 @@ impl RecordingInfo {
     const CLIMBER: &str = "climber";
 
     pub(crate) fn to_metadata(&self) -> Result<BTreeMap<String, String>, RecordError> {
-        let config = ron::to_string(&self.climber).map_err(|error| RecordError::Encode {
-            topic: "metadata",
-            reason: error.to_string(),
-        })?;
+        let config = ron::to_string(&self.climber);
+        let config = config.map_err(|error| RecordError::encode("metadata", error))?;
         let mut metadata = common(self.tick_seconds);
         metadata.extend([
             ("creature".to_owned(), self.creature.clone()),

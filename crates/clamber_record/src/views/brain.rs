@@ -3,6 +3,7 @@
 use clamber_colossus::{Creature, CreatureEvent};
 use foxglove::messages::Log;
 use foxglove::messages::log::Level;
+use glam::DVec3;
 
 use super::log;
 use crate::messages::{Brain, Named};
@@ -77,34 +78,35 @@ pub(crate) fn line(creature: &Creature, event: &CreatureEvent) -> Option<String>
             format!("staggered by a blow on plate {plate} ({name}){end}")
         }
         CreatureEvent::Arrived { place } => {
-            let [x, y, z] = place.to_array();
-            format!("is where it was sent, at {x:.1}, {y:.1}, {z:.1}")
+            format!("is where it was sent, at {}", in_words(*place))
         }
         CreatureEvent::Stopped { place } => {
-            let [x, y, z] = place.to_array();
-            format!("does not get on to where it was sent, to {x:.1}, {y:.1}, {z:.1}")
+            let to = in_words(*place);
+            format!("does not get on to where it was sent, to {to}")
         }
         CreatureEvent::Threw { state, place, .. } => {
-            let [x, y, z] = place.to_array();
-            let by = path(creature, *state);
-            format!("threw something with {by}, from {x:.1}, {y:.1}, {z:.1}")
+            let (by, from) = (path(creature, *state), in_words(*place));
+            format!("threw something with {by}, from {from}")
         }
         CreatureEvent::Burst { state, place, .. } => {
-            let [x, y, z] = place.to_array();
-            let by = path(creature, *state);
-            format!("what it threw with {by} ended at {x:.1}, {y:.1}, {z:.1}")
+            let (by, at) = (path(creature, *state), in_words(*place));
+            format!("what it threw with {by} ended at {at}")
         }
         CreatureEvent::Wave {
             state,
             place,
             radius,
         } => {
-            let [x, y, z] = place.to_array();
-            let by = path(creature, *state);
-            format!("sent out a wave of {radius:.1} m with {by}, from {x:.1}, {y:.1}, {z:.1}")
+            let (by, from) = (path(creature, *state), in_words(*place));
+            format!("sent out a wave of {radius:.1} m with {by}, from {from}")
         }
         CreatureEvent::Marker { .. } | CreatureEvent::Plant { .. } => return None,
         // An event that is newer than this list.
         other => format!("{other:?}"),
     })
+}
+
+fn in_words(place: DVec3) -> String {
+    let [x, y, z] = place.to_array();
+    format!("{x:.1}, {y:.1}, {z:.1}")
 }

@@ -66,10 +66,10 @@ pub(crate) fn rotation(q: DQuat) -> Quaternion {
     }
 }
 
-fn pose(position: DVec3) -> Pose {
+pub(crate) fn pose(position: DVec3, turn: DQuat) -> Pose {
     Pose {
         position: Some(vector(position)),
-        orientation: Some(rotation(DQuat::IDENTITY)),
+        orientation: Some(rotation(turn)),
     }
 }
 
@@ -88,7 +88,7 @@ fn point(p: DVec3) -> Point3 {
 /// Triangles of one colour, each with the indices of three points.
 fn triangle_list(points: Vec<Point3>, indices: Vec<u32>, color: Color) -> TriangleListPrimitive {
     TriangleListPrimitive {
-        pose: Some(pose(DVec3::ZERO)),
+        pose: Some(pose(DVec3::ZERO, DQuat::IDENTITY)),
         points,
         color: Some(color),
         colors: Vec::new(),

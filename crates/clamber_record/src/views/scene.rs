@@ -1,12 +1,11 @@
 use clamber_climber::{ClimberConfig, ClimberMode, ClimberState};
 use clamber_surface::mesh::{ColliderMesh, TriangleId, VertexId};
 use foxglove::messages::{
-    Color, CylinderPrimitive, Pose, SceneEntity, SceneUpdate, SpherePrimitive,
-    TriangleListPrimitive,
+    Color, CylinderPrimitive, SceneEntity, SceneUpdate, SpherePrimitive, TriangleListPrimitive,
 };
 use glam::{DQuat, DVec3, Vec3};
 
-use super::{CLIMBER, CREATURE, color, entity, point, pose, rotation, triangle_list, vector};
+use super::{CLIMBER, CREATURE, color, entity, point, pose, triangle_list, vector};
 use crate::climber::{ClimberTick, TakenSkin};
 
 /// Marks a vertex that is not among the points. No point has this index.
@@ -84,7 +83,7 @@ impl Scene {
         let tint = Some(color_of(state.mode));
         let diameter = 2.0 * self.radius;
         let ball = |center| SpherePrimitive {
-            pose: Some(pose(center)),
+            pose: Some(pose(center, DQuat::IDENTITY)),
             size: Some(vector(DVec3::splat(diameter))),
             color: tint,
         };
@@ -93,10 +92,10 @@ impl Scene {
         if height > 0.0 && !state.mode.is_holding() && !state.crouched {
             climber.spheres.push(ball(state.position + self.upright));
             climber.cylinders = vec![CylinderPrimitive {
-                pose: Some(Pose {
-                    position: Some(vector(state.position + self.upright * 0.5)),
-                    orientation: Some(rotation(from_z_to(self.upright / height))),
-                }),
+                pose: Some(pose(
+                    state.position + self.upright * 0.5,
+                    from_z_to(self.upright / height),
+                )),
                 size: Some(vector(DVec3::new(diameter, diameter, height))),
                 bottom_scale: 1.0,
                 top_scale: 1.0,
@@ -188,7 +187,7 @@ fn contact_is_on(taken: &ClimberTick, mesh: &ColliderMesh, positions: &[Vec3]) -
 mod tests {
     use super::*;
     use clamber_climber::Climber;
-    use foxglove::messages::Vector3;
+    use foxglove::messages::{Pose, Vector3};
 
     fn drawn(config: ClimberConfig, change: fn(&mut ClimberState)) -> SceneEntity {
         let climber = Climber::new(config, DVec3::new(1.0, 2.0, 3.0)).unwrap();

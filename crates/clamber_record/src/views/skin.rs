@@ -1,7 +1,7 @@
 use clamber_surface::mesh::{ColliderMesh, VertexId};
 use foxglove::messages::packed_element_field::NumericType;
 use foxglove::messages::{PackedElementField, PointCloud};
-use glam::{DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
 
 use super::{pose, timestamp};
 
@@ -43,7 +43,7 @@ fn cloud(nanoseconds: u64, frame: &str, data: Vec<u8>) -> PointCloud {
     PointCloud {
         timestamp: Some(timestamp(nanoseconds)),
         frame_id: frame.to_owned(),
-        pose: Some(pose(DVec3::ZERO)),
+        pose: Some(pose(DVec3::ZERO, DQuat::IDENTITY)),
         point_stride: STRIDE as u32,
         fields: vec![field("x", 0), field("y", 4), field("z", 8)],
         data: data.into(),

@@ -1,10 +1,5 @@
 //! Records arenas with several creatures and climbers and replays them, from cut files, too.
 
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test's helpers may fail like the test"
-)]
-
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -16,16 +11,15 @@ use clamber_fight::{
 };
 use clamber_record::{
     ArenaInfo, ArenaRecorder, ArenaRecording, Ending, RecordError, RecordOptions, Recording,
-    SceneryView,
 };
 use clamber_scenes::duel::Duel;
 use clamber_scenes::giant;
-use clamber_surface::geometry::Similarity;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use foxglove::Decode;
-use foxglove::messages::{PointCloud, SceneUpdate};
+use foxglove::messages::{Log, PointCloud, SceneUpdate};
 use glam::{DVec3, Vec3};
 
+use crate::elsewhere::rock;
 use crate::python::run_python;
 use crate::stage::{GROUND, terrain};
 
@@ -83,15 +77,7 @@ fn file() -> &'static [u8] {
         let points = corners.map(|(x, z)| Vec3::new(x, 0.0, z) * 50.0);
         let terrain = terrain();
         for tick in 0..TICKS {
-            recorder
-                .scenery(&SceneryView {
-                    name: "ground",
-                    world_from_own: Similarity::IDENTITY,
-                    points: &points,
-                    triangles: &[[0, 1, 2]],
-                    color: [0.4, 0.5, 0.3],
-                })
-                .unwrap();
+            recorder.scenery(&rock("ground", &points)).unwrap();
             let inputs = inputs(tick);
             arena.step(&inputs, &terrain).unwrap();
             recorder.tick(&arena, &inputs, &[], &terrain).unwrap();
@@ -252,8 +238,7 @@ fn the_views_name_and_hold_everybody() {
         let topic = &message.channel.topic;
         *counts.entry(topic.clone()).or_default() += 1;
         if topic == "/log" {
-            let log = <foxglove::messages::Log as foxglove::Decode>::decode(&message.data[..]);
-            let log = log.unwrap();
+            let log = Log::decode(&message.data[..]).unwrap();
             lines.push(format!("{}: {}", log.name, log.message));
         }
     }
@@ -542,9 +527,7 @@ fn what_attacks_have_let_out_is_drawn() {
     let scenes = all.filter(|message| message.channel.topic == "/scene");
     let mut counts = [0; 2];
     for (index, message) in scenes.enumerate() {
-        let scene =
-            <foxglove::messages::SceneUpdate as foxglove::Decode>::decode(&message.data[..]);
-        let scene = scene.unwrap();
+        let scene = SceneUpdate::decode(&message.data[..]).unwrap();
         let attacks = scene
             .entities
             .iter()

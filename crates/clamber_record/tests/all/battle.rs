@@ -1,11 +1,5 @@
 //! Records battles and replays them.
 
-#![expect(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test's helpers may fail like the test"
-)]
-
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
@@ -17,6 +11,8 @@ use clamber_scenes::battle::{self, Battle, BattleOptions, BattleRecorder, Story}
 use clamber_scenes::giant::giant;
 use clamber_surface::rig::Palette;
 use glam::DVec3;
+
+use crate::stage::recorded;
 
 /// Length of a climb, seconds: the giant has to strike the climber within it for one of 99 seeds.
 const CLIMB: f64 = 90.0;
@@ -36,15 +32,7 @@ fn record(options: &BattleOptions) -> Vec<u8> {
 }
 
 fn record_ticks(options: &BattleOptions, ticks: u64) -> Vec<u8> {
-    let creature = giant().unwrap();
-    let mut battle = Battle::new(&creature, options).unwrap();
-    let how = RecordOptions::waiting();
-    let mut recorder = BattleRecorder::new(Vec::new(), &battle, options, how).unwrap();
-    recorder.tick(&battle).unwrap();
-    for tick in 0..ticks {
-        battle.step(options.input_at(tick)).unwrap();
-        recorder.tick(&battle).unwrap();
-    }
+    let recorder = recorded(Vec::new(), options, RecordOptions::waiting(), ticks);
     recorder.finish().unwrap()
 }
 
@@ -79,7 +67,7 @@ static CLIMBS: LazyLock<BattleOptions> = LazyLock::new(|| {
             let support = battle.climber().state().support;
             rode |= support.is_some_and(|on| on.attachment.obstacle == battle::CREATURE);
         }
-        battle.counts().blows > 0 && rode
+        battle.counts.blows > 0 && rode
     };
     let mut all = (1..100).map(options);
     all.find(is_struck).unwrap()
@@ -403,7 +391,7 @@ fn a_tick_that_is_refused_changes_nothing() {
     let stranger = Palette::default();
     let view = |tick, palette| TickView {
         tick,
-        input: battle.input(),
+        input: &battle.input,
         state: battle.climber().state(),
         report: battle.report(),
         surface: battle.surface(),

@@ -1,11 +1,5 @@
 //! Reads files that were cut, changed or emptied, and files that are not recordings.
 
-#![expect(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test's helpers may fail like the test"
-)]
-
 use std::sync::OnceLock;
 use std::time::Duration;
 
@@ -13,7 +7,7 @@ use clamber_record::{Ending, RecordError, RecordOptions, Recording};
 use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
 use clamber_scenes::giant::giant;
 
-use crate::stage::Disk;
+use crate::stage::{Disk, recorded};
 
 /// Length of the recording, ticks: three seconds, for several chunks.
 const TICKS: u64 = 180;
@@ -21,19 +15,11 @@ const TICKS: u64 = 180;
 fn file() -> &'static [u8] {
     static FILE: OnceLock<Vec<u8>> = OnceLock::new();
     FILE.get_or_init(|| {
-        let creature = giant().unwrap();
-        let options = BattleOptions::ride(0, 1);
-        let mut battle = Battle::new(&creature, &options).unwrap();
         let how = RecordOptions {
             skin_points: 50,
             ..RecordOptions::waiting()
         };
-        let mut recorder = BattleRecorder::new(Vec::new(), &battle, &options, how).unwrap();
-        recorder.tick(&battle).unwrap();
-        for tick in 0..TICKS {
-            battle.step(options.input_at(tick)).unwrap();
-            recorder.tick(&battle).unwrap();
-        }
+        let recorder = recorded(Vec::new(), &BattleOptions::ride(0, 1), how, TICKS);
         recorder.finish().unwrap()
     })
 }
@@ -144,7 +130,7 @@ fn files_that_are_no_recordings_are_refused() {
     // A file of another program.
     let mut foreign = mcap::Writer::new(std::io::Cursor::new(Vec::new())).unwrap();
     foreign
-        .add_channel(0, topics_of_others(), "json", &Default::default())
+        .add_channel(0, "/imu", "json", &Default::default())
         .unwrap();
     foreign.finish().unwrap();
     no_recording(foreign.into_inner().into_inner());
@@ -160,10 +146,6 @@ fn files_that_are_no_recordings_are_refused() {
         noise.extend((0..rng.usize(..200)).map(|_| rng.u8(..16)));
         assert!(Recording::from_bytes(noise).is_err());
     }
-}
-
-fn topics_of_others() -> &'static str {
-    "/imu"
 }
 
 #[test]
@@ -211,19 +193,10 @@ fn a_writer_that_fails_gives_its_error() {
 
 #[test]
 fn a_run_that_is_killed_leaves_its_whole_chunks() {
-    let creature = giant().unwrap();
     let options = BattleOptions::ride(0, 1);
-    let mut battle = Battle::new(&creature, &options).unwrap();
-    let how = RecordOptions::waiting();
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("killed.mcap");
     let file = std::io::BufWriter::new(std::fs::File::create(&path).unwrap());
-    let mut recorder = BattleRecorder::new(file, &battle, &options, how).unwrap();
-    recorder.tick(&battle).unwrap();
-    for tick in 0..150 {
-        battle.step(options.input_at(tick)).unwrap();
-        recorder.tick(&battle).unwrap();
-    }
-    std::mem::forget(recorder);
+    std::mem::forget(recorded(file, &options, RecordOptions::waiting(), 150));
     // The thread may still be writing.
     let start = std::time::Instant::now();
     let mut recording = Recording::open(&path);
@@ -242,20 +215,12 @@ fn record_into<W: std::io::Write + Send + 'static>(
     chunk_ticks: u32,
     end: impl FnOnce(BattleRecorder<W>),
 ) {
-    let creature = giant().unwrap();
-    let options = BattleOptions::ride(0, 1);
-    let mut battle = Battle::new(&creature, &options).unwrap();
     let how = RecordOptions {
         chunk_ticks,
         skin_points: 50,
         ..RecordOptions::waiting()
     };
-    let mut recorder = BattleRecorder::new(out, &battle, &options, how).unwrap();
-    for tick in 0..70 {
-        battle.step(options.input_at(tick)).unwrap();
-        recorder.tick(&battle).unwrap();
-    }
-    end(recorder);
+    end(recorded(out, &BattleOptions::ride(0, 1), how, 69));
 }
 
 #[test]

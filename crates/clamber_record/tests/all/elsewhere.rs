@@ -1,11 +1,6 @@
 //! Files as other programs write them: compressed chunks, no checksums; files that are longer than memory, and disks
 //! that are slower than the game.
 
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test's helpers may fail like the test"
-)]
-
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::sync::OnceLock;
 use std::time::Duration;
@@ -14,14 +9,15 @@ use clamber_climber::ClimberInput;
 use clamber_fight::{Arena, ArenaConfig, FighterConfig};
 use clamber_record::{
     AnyRecording, ArenaInfo, ArenaRecorder, ArenaRecording, Ending, RecordOptions, Recorder,
-    Recording, RecordingInfo, ReplayError, Replayed, SceneryView, TickView,
+    Recording, ReplayError, Replayed, SceneryView,
 };
-use clamber_scenes::battle::{self, Battle, BattleOptions, BattleRecorder};
+use clamber_scenes::battle::{self, Battle, BattleOptions};
 use clamber_scenes::giant::giant;
 use clamber_surface::geometry::Similarity;
 use glam::{DVec3, Vec3};
 
-use crate::stage::{Disk, terrain};
+use crate::figure::{info, view};
+use crate::stage::{Disk, recorded, terrain};
 
 /// Length of the recording, ticks.
 const TICKS: u64 = 200;
@@ -46,6 +42,17 @@ pub(crate) fn inputs(tick: u64) -> [ClimberInput; 2] {
         jump: tick % 50 == 7 * player,
         ..ClimberInput::IDLE
     })
+}
+
+/// A rock of one triangle.
+pub(crate) fn rock<'a>(name: &'a str, points: &'a [Vec3]) -> SceneryView<'a> {
+    SceneryView {
+        name,
+        world_from_own: Similarity::IDENTITY,
+        points,
+        triangles: &[[0, 1, 2]],
+        color: [0.5; 3],
+    }
 }
 
 pub(crate) fn file() -> &'static [u8] {
@@ -313,13 +320,7 @@ fn what_appears_in_a_gap_is_drawn() {
         recorder.tick(&arena, &inputs(tick), &[], &terrain).unwrap();
         if tick % 7 == 0 {
             names.push(format!("rock of tick {tick}"));
-            let rock = SceneryView {
-                name: names.last().unwrap(),
-                world_from_own: Similarity::IDENTITY,
-                points: &points,
-                triangles: &[[0, 1, 2]],
-                color: [0.5; 3],
-            };
+            let rock = rock(names.last().unwrap(), &points);
             recorder.scenery(&rock).unwrap();
         }
     }
@@ -356,14 +357,8 @@ fn what_is_recorded_is_never_too_large_to_be_read() {
     for tick in 0..12 {
         arena.step(&inputs(tick), &terrain).unwrap();
         recorder.tick(&arena, &inputs(tick), &[], &terrain).unwrap();
-        let rock = SceneryView {
-            name: &format!("rock {tick}"),
-            world_from_own: Similarity::IDENTITY,
-            points: &points,
-            triangles: &[[0, 1, 2]],
-            color: [0.5; 3],
-        };
-        recorder.scenery(&rock).unwrap();
+        let name = format!("rock {tick}");
+        recorder.scenery(&rock(&name, &points)).unwrap();
     }
     let file = recorder.finish().unwrap();
     let summary = mcap::Summary::read(&file).unwrap().unwrap();
@@ -386,20 +381,13 @@ fn what_is_recorded_is_never_too_large_to_be_read() {
 /// as one run returns an error.
 #[test]
 fn a_climbers_recording_with_gaps_is_replayed_run_by_run() {
-    let creature = giant().unwrap();
     let options = BattleOptions::ride(0, 1);
-    let mut battle = Battle::new(&creature, &options).unwrap();
     let disk = Disk::slow(Duration::from_millis(60));
     let how = RecordOptions {
         chunk_ticks: 20,
         ..RecordOptions::default()
     };
-    let mut recorder = BattleRecorder::new(disk, &battle, &options, how).unwrap();
-    recorder.tick(&battle).unwrap();
-    for tick in 0..1200 {
-        battle.step(options.input_at(tick)).unwrap();
-        recorder.tick(&battle).unwrap();
-    }
+    let recorder = recorded(disk, &options, how, 1200);
     let file = recorder.finish().unwrap().bytes();
     let recording = Recording::from_bytes(file).unwrap();
     let runs: Vec<_> = recording.runs().collect();
@@ -434,35 +422,18 @@ fn what_is_lost_at_the_end_is_told() {
     let options = BattleOptions::ride(0, 1);
     for stalls in [false, true] {
         let mut battle = Battle::new(&creature, &options).unwrap();
-        let info = RecordingInfo {
-            creature: creature.name.clone(),
-            creature_fingerprint: 1,
-            tick_seconds: battle::TICK,
-            climber: *battle.climber().config(),
-            settings: Default::default(),
-            version: RecordingInfo::VERSION.to_owned(),
-        };
         let how = RecordOptions {
             chunk_ticks: 10,
             ..RecordOptions::default()
         };
         let disk = Disk::default();
-        let mut recorder = Recorder::new(disk.clone(), &info, &creature.rig.skeleton, how).unwrap();
+        let skeleton = &creature.rig.skeleton;
+        let mut recorder = Recorder::new(disk.clone(), &info(&battle), skeleton, how).unwrap();
         for tick in 0..=600 {
             if tick > 0 {
                 battle.step(options.input_at(tick)).unwrap();
             }
-            recorder
-                .tick(&TickView {
-                    tick,
-                    input: battle.input(),
-                    state: battle.climber().state(),
-                    report: battle.report(),
-                    surface: battle.surface(),
-                    palette: battle.palette(),
-                    scene_fingerprint: 0,
-                })
-                .unwrap();
+            recorder.tick(&view(&battle)).unwrap();
             if tick == 0 || tick == 30 {
                 recorder.snapshot("here").unwrap();
             }

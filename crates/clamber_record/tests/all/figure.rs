@@ -1,10 +1,5 @@
 //! Records drawn figures.
 
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test's helpers may fail like the test"
-)]
-
 use std::collections::HashMap;
 
 use clamber_record::{
@@ -54,8 +49,8 @@ fn record(ticks: u64, scale: f64) -> (Vec<u8>, Vec<Vec<DVec3>>) {
     (recorder.finish().unwrap(), places)
 }
 
-fn info(battle: &Battle<'_>) -> RecordingInfo {
-    let creature = battle.creature();
+pub(crate) fn info(battle: &Battle<'_>) -> RecordingInfo {
+    let creature = battle.creature;
     RecordingInfo {
         creature: creature.name.clone(),
         creature_fingerprint: creature_fingerprint(
@@ -71,15 +66,15 @@ fn info(battle: &Battle<'_>) -> RecordingInfo {
 }
 
 fn recorder(battle: &Battle<'_>) -> Recorder<Vec<u8>> {
-    let skeleton = &battle.creature().rig.skeleton;
+    let skeleton = &battle.creature.rig.skeleton;
     let options = RecordOptions::waiting();
     Recorder::new(Vec::new(), &info(battle), skeleton, options).unwrap()
 }
 
-fn view<'a>(battle: &'a Battle<'_>) -> TickView<'a> {
+pub(crate) fn view<'a>(battle: &'a Battle<'_>) -> TickView<'a> {
     TickView {
         tick: battle.tick(),
-        input: battle.input(),
+        input: &battle.input,
         state: battle.climber().state(),
         report: battle.report(),
         surface: battle.surface(),

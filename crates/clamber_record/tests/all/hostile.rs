@@ -1,21 +1,14 @@
 //! Files that were made to do harm, or that other programs have cut. They have no checksums, so that the reader has to
 //! check their contents.
 
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test's helpers may fail like the test"
-)]
-
 use clamber_climber::ClimberInput;
 use clamber_fight::{ArenaConfig, FighterConfig};
 use clamber_record::{
-    ArenaInfo, ArenaRecorder, ArenaRecording, Ending, RecordError, RecordOptions, SceneryView,
-    topics,
+    ArenaInfo, ArenaRecorder, ArenaRecording, Ending, RecordError, RecordOptions, topics,
 };
-use clamber_surface::geometry::Similarity;
 use glam::{DVec3, Vec3};
 
-use crate::elsewhere::{CHUNK, DATA_END, arena, compressed, file, inputs, records, written};
+use crate::elsewhere::{CHUNK, DATA_END, arena, compressed, file, inputs, records, rock, written};
 use crate::stage::terrain;
 
 /// Kind of MCAP's channel record.
@@ -212,14 +205,8 @@ fn meshes_without_end_do_not_end_the_recording() {
     for tick in 0..30 {
         arena.step(&inputs(tick), &terrain).unwrap();
         recorder.tick(&arena, &inputs(tick), &[], &terrain).unwrap();
-        let rock = SceneryView {
-            name: &format!("rock {tick}"),
-            world_from_own: Similarity::IDENTITY,
-            points: &points,
-            triangles: &[[0, 1, 2]],
-            color: [0.5; 3],
-        };
-        recorder.scenery(&rock).unwrap();
+        let name = format!("rock {tick}");
+        recorder.scenery(&rock(&name, &points)).unwrap();
     }
     recorder.finish().unwrap();
 }

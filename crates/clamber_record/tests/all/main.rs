@@ -1,5 +1,7 @@
 //! Recordings are read back, by this crate and by other programs.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
 mod arena;
 mod battle;
 mod damage;

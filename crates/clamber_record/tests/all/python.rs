@@ -1,10 +1,5 @@
 //! Checks a recording with a third-party reader in Python, if that is installed.
 
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test's helpers may fail like the test"
-)]
-
 use std::io::Write;
 use std::path::Path;
 use std::process::Command;

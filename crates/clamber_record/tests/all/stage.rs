@@ -1,15 +1,13 @@
-//! Ground to stand on, and disks to write to.
-
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test's helpers may fail like the test"
-)]
+//! Ground to stand on, disks to write to, and recorded battles.
 
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock, Mutex};
 use std::time::Duration;
 
+use clamber_record::RecordOptions;
+use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
+use clamber_scenes::giant::giant;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 
 /// The ground's obstacle id.
@@ -19,6 +17,24 @@ pub(crate) const GROUND: ObstacleId = ObstacleId(7);
 pub(crate) fn terrain() -> [(ObstacleId, &'static dyn Obstacle); 1] {
     static LEVEL: LazyLock<HalfSpace> = LazyLock::new(|| HalfSpace::below(0.0));
     [(GROUND, &*LEVEL)]
+}
+
+/// Records the ticks 0 to `ticks` of a battle. The recorder is still open.
+pub(crate) fn recorded<W: Write + Send + 'static>(
+    out: W,
+    options: &BattleOptions,
+    how: RecordOptions,
+    ticks: u64,
+) -> BattleRecorder<W> {
+    let creature = giant().unwrap();
+    let mut battle = Battle::new(&creature, options).unwrap();
+    let mut recorder = BattleRecorder::new(out, &battle, options, how).unwrap();
+    recorder.tick(&battle).unwrap();
+    for tick in 0..ticks {
+        battle.step(options.input_at(tick)).unwrap();
+        recorder.tick(&battle).unwrap();
+    }
+    recorder
 }
 
 /// A file on a disk, whose bytes outlive the recorder.

@@ -1,10 +1,5 @@
 //! The rendered skin agrees with the surface that queries use: on the giant, and on models from files.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test's helpers may fail like the test"
-)]
-
 use crate::common;
 
 use clamber_render::{Camera, Drawn, Frame, Image, Light, Look, Overlay, RenderMesh, Renderer};

@@ -1,10 +1,5 @@
 //! Tests that meshes, shadows and overlays are drawn at their right places, and that bad input is an error.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test's helpers may fail like the test"
-)]
-
 use crate::common;
 
 use clamber_render::{

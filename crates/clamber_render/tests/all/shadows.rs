@@ -1,10 +1,5 @@
 //! Tests that faces in the sun are lit evenly, and that faces behind a wall are not lit.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test's helpers may fail like the test"
-)]
-
 use crate::common;
 
 use clamber_render::{Camera, Drawn, Frame, Light, Overlay, RenderMesh, Renderer};

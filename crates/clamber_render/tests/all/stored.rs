@@ -9,12 +9,6 @@
 //! After a failure, the new picture and a picture of the differences are in `tmp` in cargo's target folder. Look at the
 //! new pictures first. If they are right, `CLAMBER_BLESS=1 cargo test -p clamber_render --test all stored` stores them.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test's helpers may fail like the test"
-)]
-
 use crate::common;
 
 use std::fs::File;
@@ -286,7 +280,7 @@ fn overlay(battle: &Battle<'_>, wanted: bool) -> Overlay {
     let root = battle.surface().world_from_model();
     let frames = |joint: JointId| battle.palette().model_from_joint(joint).unwrap();
     let place = |joint| root.transform_point(frames(joint).translation);
-    for (index, joint) in (0..).zip(battle.creature().rig.skeleton.joints()) {
+    for (index, joint) in (0..).zip(battle.creature.rig.skeleton.joints()) {
         if let Some(parent) = joint.parent {
             let ends = [place(parent), place(JointId(index))];
             over.line(ends[0], ends[1], 3.0, [1.0, 0.75, 0.1, 0.9]);
@@ -303,7 +297,7 @@ fn overlay(battle: &Battle<'_>, wanted: bool) -> Overlay {
 
 /// The creature's palette with one joint and all joints below it turned by 30 degrees.
 fn bent(battle: &Battle<'_>, name: &str) -> Palette {
-    let joints = battle.creature().rig.skeleton.joints();
+    let joints = battle.creature.rig.skeleton.joints();
     let bent = joints.iter().position(|joint| joint.name == name).unwrap();
     let bent = JointId(bent as u32);
     let from = battle.palette().model_from_joint(bent).unwrap().translation;

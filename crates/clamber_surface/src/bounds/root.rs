@@ -103,28 +103,12 @@ fn image(joint: &Joint, p: DVec3) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::assert_in_root_box;
     use super::super::tests::random::{MOTIONS, Spread, creature, palette};
     use super::*;
     use crate::geometry::Affine;
-    use crate::mesh::{ColliderMesh, Influence};
-    use crate::rig::JointId;
     use crate::skin::skin;
-    use crate::testing::{bend, direction, tube};
-
-    fn bounds(mesh: &ColliderMesh, palette: &[Affine]) -> RootBox {
-        let mut table = JointTable::default();
-        table.update(palette);
-        root_box(mesh.joint_balls(), &table)
-    }
-
-    fn check(mesh: &ColliderMesh, palette: &[Affine], found: &RootBox, case: &str) -> usize {
-        let skinned = skin(mesh, palette).unwrap();
-        for p in &skinned {
-            let inside = p.cmpge(found.min).all() && p.cmple(found.max).all();
-            assert!(inside, "{case}: {p} outside {found:?}");
-        }
-        skinned.len()
-    }
+    use crate::testing::{bend, direction, influence, tube};
 
     #[test]
     fn no_vertex_lies_outside_the_root_box() {
@@ -133,14 +117,12 @@ mod tests {
         for case in 0..900 {
             let spread = [Spread::Random, Spread::Few, Spread::Constant][case % 3];
             let (mesh, _) = creature(&mut rng, 1 + case % 16, spread);
-            let mut table = JointTable::default();
             for motion in MOTIONS.into_iter().chain(MOTIONS) {
                 let palette = palette(&mut rng, motion, mesh.radius());
-                table.update(palette.matrices());
-                let found = root_box(mesh.joint_balls(), &table);
-                assert!(found.min.is_finite() && found.max.is_finite(), "{found:?}");
                 let case = format!("case {case}, {motion:?}");
-                checked += check(&mesh, palette.matrices(), &found, &case);
+                let found = assert_in_root_box(&mesh, palette.matrices(), &case);
+                assert!(found.min.is_finite() && found.max.is_finite(), "{found:?}");
+                checked += mesh.positions().len();
             }
         }
         assert!(checked > 1_000_000, "{checked}");
@@ -156,23 +138,17 @@ mod tests {
             for _ in 0..6 {
                 let far = mesh.radius() * [0.0, 1.0, 3.0][rng.usize(0..3)];
                 let position = direction(&mut rng) * far;
-                let influence = |_| Influence {
-                    joint: JointId(rng.u32(0..joints)),
-                    weight: 1.0,
-                };
-                let influences: Vec<_> = (0..1 + case % 7).map(influence).collect();
+                let any = |_| influence(rng.u32(0..joints), 1.0);
+                let influences: Vec<_> = (0..1 + case % 7).map(any).collect();
                 let vertex = mesh.check_vertex(position, &influences).unwrap();
                 mesh.add_vertex(vertex);
             }
             assert_ne!(*mesh.joint_balls(), balls, "case {case}");
             assert_eq!(mesh.joint_balls().influences, mesh.max_influences());
-            let mut table = JointTable::default();
             for motion in MOTIONS {
                 let palette = palette(&mut rng, motion, mesh.radius());
-                table.update(palette.matrices());
-                let found = root_box(mesh.joint_balls(), &table);
                 let case = format!("case {case}, {motion:?}");
-                check(&mesh, palette.matrices(), &found, &case);
+                assert_in_root_box(&mesh, palette.matrices(), &case);
             }
         }
     }
@@ -188,12 +164,7 @@ mod tests {
             let mut table = JointTable::default();
             table.update(palette.matrices());
             let mut balls = mesh.joint_balls().clone();
-            check(
-                &mesh,
-                palette.matrices(),
-                &root_box(&balls, &table),
-                &format!("{case}"),
-            );
+            assert_in_root_box(&mesh, palette.matrices(), &format!("case {case}"));
             for rest in &mut balls.balls {
                 (rest.ball.center, rest.ball.radius) = (mesh.positions()[0], 0.0);
             }
@@ -212,8 +183,7 @@ mod tests {
     fn the_box_of_a_bent_tube_is_tight() {
         let mesh = tube(6, 24);
         let palette = bend(6, DVec3::Z, 0.4);
-        let found = bounds(&mesh, palette.matrices());
-        check(&mesh, palette.matrices(), &found, "tube");
+        let found = assert_in_root_box(&mesh, palette.matrices(), "tube");
         let skinned = skin(&mesh, palette.matrices()).unwrap();
         let min = skinned.iter().fold(Vec3::INFINITY, |m, p| m.min(*p));
         let max = skinned.iter().fold(Vec3::NEG_INFINITY, |m, p| m.max(*p));
@@ -230,7 +200,9 @@ mod tests {
             },
             Affine::IDENTITY,
         ];
-        let found = bounds(&mesh, &palette);
+        let mut table = JointTable::default();
+        table.update(&palette);
+        let found = root_box(mesh.joint_balls(), &table);
         assert_eq!(found.min, Vec3::NEG_INFINITY);
         assert_eq!(found.max, Vec3::INFINITY);
     }

@@ -8,15 +8,12 @@ use glam::{DAffine3, DVec3, Vec3};
 use super::*;
 use crate::geometry::{Affine, Sphere, rotation_from_axis_angle, widen};
 use crate::mesh::hierarchy::{Child, Hierarchy};
-use crate::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshSource, PaletteError, PartId, Summarizer,
-    SurfaceTag, VertexId,
-};
+use crate::mesh::{ColliderMesh, PaletteError, PartId, Summarizer, SurfaceTag, VertexId};
 use crate::rig::{JointId, Palette};
 use crate::simd::SimdLevel;
 use crate::skin::skin;
 use crate::surface::SkinnedSurface;
-use crate::testing::{bend, direction, point, rigid, tube};
+use crate::testing::{bend, direction, influence, point, rigid, skinned_mesh, tube};
 use random::{JOINTS, Spread, creature};
 
 /// A node whose children are sets of vertices.
@@ -30,6 +27,18 @@ pub(super) fn node_of(mesh: &ColliderMesh, sets: &[Vec<VertexId>]) -> Hierarchy 
     let node = hierarchy.node_of(&children);
     hierarchy.nodes.push(node);
     hierarchy
+}
+
+/// Asserts that every vertex lies in the box around the mesh, and returns the box.
+pub(super) fn assert_in_root_box(mesh: &ColliderMesh, palette: &[Affine], case: &str) -> RootBox {
+    let mut table = JointTable::default();
+    table.update(palette);
+    let found = root_box(mesh.joint_balls(), &table);
+    for p in skin(mesh, palette).unwrap() {
+        let inside = p.cmpge(found.min).all() && p.cmple(found.max).all();
+        assert!(inside, "{case}: {p} outside {found:?}");
+    }
+    found
 }
 
 /// Asserts that the sphere of a set of vertices holds all of them, and returns it.
@@ -68,18 +77,9 @@ fn a_vertex_far_from_a_turning_mesh_origin_is_within_the_bound() {
     for case in 0..4_000 {
         let far = direction(&mut rng) * 1e3;
         let weight = rng.f32();
-        let influences = [(0, weight), (1, 1.0 - weight)].map(|(joint, weight)| Influence {
-            joint: JointId(joint),
-            weight,
-        });
-        let source = MeshSource {
-            positions: &[far, Vec3::ZERO, point(&mut rng, 1.0)],
-            triangles: &[[0, 1, 2]],
-            influences: &[influences; 3].concat(),
-            joint_count: 2,
-            ..MeshSource::default()
-        };
-        let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+        let influences = [influence(0, weight), influence(1, 1.0 - weight)];
+        let corners = [far, Vec3::ZERO, point(&mut rng, 1.0)];
+        let mesh = skinned_mesh(&corners, &[[0, 1, 2]], &[influences; 3].concat(), 2);
         let turn = rotation_from_axis_angle(widen(direction(&mut rng)).normalize(), 1.0);
         let matrix = Affine::from_f64(&DAffine3::from_quat(turn));
         let palette = Palette::from_matrices([matrix; 2]);

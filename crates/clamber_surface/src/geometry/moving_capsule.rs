@@ -195,16 +195,11 @@ mod tests {
         let offset = random(rng, 1.0) * [0.0, 1e3][rng.usize(0..2)];
         let a = random(rng, 2.0) + offset;
         let by = random(rng, 3.0);
-        let along = if is_ball {
-            DVec3::ZERO
-        } else {
-            random(rng, 1.0)
+        let mut along = || match is_ball {
+            true => DVec3::ZERO,
+            false => random(rng, 1.0),
         };
-        let turned = if is_ball {
-            DVec3::ZERO
-        } else {
-            random(rng, 1.0)
-        };
+        let [along, turned] = [along(), along()];
         let capsule = MovingCapsule {
             start: [a, a + along],
             end: [a + by, a + by + turned],
@@ -236,10 +231,8 @@ mod tests {
             for step in 0..200 {
                 let time = until * f64::from(step) / 200.0;
                 let apart = gap(time);
-                assert!(
-                    inside || apart > -1e-9,
-                    "{round} {capsule:?}: {apart} at {time}"
-                );
+                let is_apart = inside || apart > -1e-9;
+                assert!(is_apart, "{round} {capsule:?}: {apart} at {time}");
             }
             let Some(touch) = touch else {
                 missed += 1;
@@ -247,15 +240,10 @@ mod tests {
             };
             met += 1;
             let apart = gap(touch.fraction);
-            assert!(
-                apart <= 1e-4 + 1e-9 && !touch.undecided,
-                "{round} {touch:?}: {apart}"
-            );
-            assert_eq!(
-                inside,
-                touch.fraction == 0.0 && apart <= 0.0,
-                "{round} {touch:?}"
-            );
+            assert!(!touch.undecided, "{round} {touch:?}");
+            assert!(apart <= 1e-4 + 1e-9, "{round} {touch:?}: {apart}");
+            let began = touch.fraction == 0.0 && apart <= 0.0;
+            assert_eq!(inside, began, "{round} {touch:?}");
             // Point, direction and distance agree with the segment at that time.
             let [a, b] = capsule.at(touch.fraction);
             let on_axis = a + (b - a) * touch.on_axis;

@@ -235,13 +235,17 @@ impl ColliderMesh {
     /// [`PaletteError::JointCount`] if there is not one matrix per joint of the mesh; [`PaletteError::Matrix`] if a
     /// matrix is not finite or could move a vertex farther than 2^100 from the origin.
     pub fn check_palette(&self, matrices: &[Affine]) -> Result<(), PaletteError> {
-        if matrices.len() != self.joint_count {
-            return Err(PaletteError::JointCount {
-                expected: self.joint_count,
-                found: matrices.len(),
-            });
-        }
+        self.check_joint_count(matrices.len())?;
         check_matrices(matrices.iter().copied(), self.radius)
+    }
+
+    pub(crate) fn check_joint_count(&self, found: usize) -> Result<(), PaletteError> {
+        let expected = self.joint_count;
+        if found == expected {
+            Ok(())
+        } else {
+            Err(PaletteError::JointCount { expected, found })
+        }
     }
 
     /// Rebuilds the clusters, the hierarchy and the joint balls.

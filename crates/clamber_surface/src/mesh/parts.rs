@@ -271,12 +271,8 @@ mod tests {
             assert_eq!(early.lists(&all), lists);
             assert_eq!((early.count(), &early), (lists.len(), &late));
             let held: usize = lists.iter().map(|part| part.triangles.len()).sum();
-            assert_eq!(
-                held,
-                (0..all.len() as u32)
-                    .filter(|t| late.of(TriangleId(*t)).is_some())
-                    .count()
-            );
+            let triangles = (0..all.len() as u32).map(TriangleId);
+            assert_eq!(held, triangles.filter(|t| late.of(*t).is_some()).count());
         }
     }
 

@@ -93,14 +93,12 @@ fn distribute_rest(shares: &mut [(JointId, u32, f64)]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::influence;
 
     fn influences(weights: &[(u32, f32)]) -> Vec<Influence> {
+        let weights = weights.iter();
         weights
-            .iter()
-            .map(|&(joint, weight)| Influence {
-                joint: JointId(joint),
-                weight,
-            })
+            .map(|(joint, weight)| influence(*joint, *weight))
             .collect()
     }
 

@@ -4,10 +4,10 @@ use super::*;
 use crate::bounds::tests::random::{JOINTS, MOTIONS, Spread, creature, palette};
 use crate::measure::skin_scalar;
 use crate::mesh::clusters::Cluster;
-use crate::mesh::hierarchy::Child;
-use crate::mesh::{BuildOptions, Influence, MeshSource};
-use crate::rig::{JointId, Palette};
-use crate::testing::{bend, direction, point, tube};
+use crate::rig::Palette;
+use crate::testing::{
+    bend, clusters_below, direction, influence, point, separate, skinned_mesh, tube,
+};
 use glam::DVec3;
 
 /// 700 triangles, each of nearby vertices that follow `influences` of [`JOINTS`] joints: enough for nodes above
@@ -21,34 +21,11 @@ fn many_clusters(rng: &mut fastrand::Rng, influences: usize) -> ColliderMesh {
         let first = rng.u32(0..JOINTS);
         for _ in 0..3 {
             positions.push(middle + point(rng, size * 0.1));
-            given.extend((0..influences as u32).map(|k| Influence {
-                joint: JointId((first + k) % JOINTS),
-                weight: rng.f32() + 1e-3,
-            }));
+            let joints = (0..influences as u32).map(|k| (first + k) % JOINTS);
+            given.extend(joints.map(|joint| influence(joint, rng.f32() + 1e-3)));
         }
     }
-    let triangles: Vec<[u32; 3]> = (0..700).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &given,
-        joint_count: JOINTS as usize,
-        ..MeshSource::default()
-    };
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
-    mesh
-}
-
-fn clusters_below(mesh: &ColliderMesh, child: Child, out: &mut Vec<u32>) {
-    match child {
-        Child::Cluster(cluster) => out.push(cluster),
-        Child::Node(index) => {
-            let node = &mesh.hierarchy().nodes[index as usize];
-            for lane in 0..usize::from(node.lanes) {
-                clusters_below(mesh, node.child(lane), out);
-            }
-        }
-    }
+    skinned_mesh(&positions, &separate(700), &given, JOINTS as usize)
 }
 
 /// Asserts that every vertex lies in every bound above it. Returns the number of pairs.
@@ -60,9 +37,7 @@ fn check(mesh: &ColliderMesh, pose: &PosedMesh, case: &str) -> usize {
     for (index, node) in mesh.hierarchy().nodes.iter().enumerate() {
         let bounds = pose.bounds(mesh, index as u32);
         for lane in 0..usize::from(node.lanes) {
-            let mut below = Vec::new();
-            clusters_below(mesh, node.child(lane), &mut below);
-            for cluster in below {
+            for cluster in clusters_below(mesh.hierarchy(), node.child(lane)) {
                 for v in vertices(&clusters.clusters[cluster as usize]) {
                     let p = skinned[v];
                     assert!(
@@ -100,20 +75,13 @@ fn check_both(mesh: &ColliderMesh, pose: &mut PosedMesh, palette: &Palette, case
 
 fn hunt(seed: u64, cases: usize) -> usize {
     let mut rng = fastrand::Rng::with_seed(seed);
-    let spreads = [
-        Spread::Random,
-        Spread::NearlyEqual,
-        Spread::Uneven,
-        Spread::Few,
-        Spread::Constant,
-    ];
     let mut checked = 0;
     for case in 0..cases {
         let influences = 1 + case % 12;
         let mesh = if case % 4 == 0 {
             many_clusters(&mut rng, influences)
         } else {
-            creature(&mut rng, influences, spreads[case / 12 % 5]).0
+            creature(&mut rng, influences, Spread::ALL[case / 12 % 5]).0
         };
         let mut pose = PosedMesh::at_rest(&mesh, SimdLevel::best());
         for motion in MOTIONS {
@@ -175,12 +143,7 @@ fn requested_entries_stay_marked_when_everything_is_filled() {
     assert_eq!(pose.asked_nodes().collect::<Vec<_>>(), [0, 1]);
     // Another palette invalidates everything.
     pose.set(&mesh, pose.palette.clone().into_iter());
-    assert_eq!(
-        (
-            pose.asked_clusters().count(),
-            pose.skinned_clusters().count()
-        ),
-        (0, 0)
-    );
+    assert_eq!(pose.asked_clusters().count(), 0);
+    assert_eq!(pose.skinned_clusters().count(), 0);
     assert_eq!(pose.asked_nodes().count(), 0);
 }

@@ -15,21 +15,20 @@ use std::sync::Arc;
 
 use crate::SimdLevel;
 use crate::bounds::tests::random::{MOTIONS, Spread, creature, palette};
-use crate::geometry::{Affine, Ray, Similarity};
+use crate::geometry::{Affine, Ray};
 use crate::measure::{BruteForce, skin_scalar};
 use crate::mesh::{ColliderMesh, VertexId};
 use crate::rig::Palette;
 use crate::surface::SkinnedSurface;
 use crate::surface::agreement::{assert_queries_agree, assert_same_answers, questions};
-use crate::testing::cases;
-use glam::Vec3;
+use crate::testing::{advance, ball, bend, bits, cases, positions_of, tube};
+use glam::{DVec3, Vec3};
 
 fn assert_positions_equal(surface: &SkinnedSurface, mesh: &ColliderMesh, case: &str) {
     let wanted = skin_scalar(mesh, surface.instance.current.palette()).unwrap();
     let before = skin_scalar(mesh, surface.instance.previous.palette()).unwrap();
-    let mut all = Vec::new();
-    surface.skin_all(&mut all);
-    assert!(same_bits(&all, &wanted), "{case}: skin_all");
+    let all = positions_of(surface);
+    assert!(bits(&all) == bits(&wanted), "{case}: skin_all");
     for (index, cluster) in mesh.clusters().clusters.iter().enumerate() {
         for (pose, wanted) in [
             (&surface.instance.current, &wanted),
@@ -40,32 +39,21 @@ fn assert_positions_equal(surface: &SkinnedSurface, mesh: &ColliderMesh, case: &
                 let positions = &pose.cluster(mesh, index as u32).positions;
                 for (slot, v) in cluster.vertices(mesh.clusters()).iter().enumerate() {
                     let found = Vec3::from_array(positions.0.map(|axis| axis[slot]));
-                    assert!(same_bits(&[found], &[wanted[v.index()]]), "{case}: {v}");
+                    let wanted = wanted[v.index()];
+                    assert_eq!(bits(&[found]), bits(&[wanted]), "{case}: {v}");
                 }
             }
         }
     }
 }
 
-fn same_bits(a: &[Vec3], b: &[Vec3]) -> bool {
-    let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| bits(a) == bits(b))
-}
-
 #[test]
 fn queries_and_skinning_agree_in_any_pose_at_every_simd_level() {
     let mut rng = fastrand::Rng::with_seed(71);
-    let spreads = [
-        Spread::Random,
-        Spread::NearlyEqual,
-        Spread::Uneven,
-        Spread::Few,
-        Spread::Constant,
-    ];
     let mut found = 0;
     // Steps of 5 also go through all counts of joints and all spreads.
     for case in (0..120).step_by(120 / cases(120)) {
-        let (mesh, _) = creature(&mut rng, 1 + case % 16, spreads[case / 16 % 5]);
+        let (mesh, _) = creature(&mut rng, 1 + case % 16, Spread::ALL[case / 16 % 5]);
         let mesh = Arc::new(mesh);
         let mut surfaces: Vec<SkinnedSurface> = SimdLevel::available()
             .into_iter()
@@ -77,7 +65,7 @@ fn queries_and_skinning_agree_in_any_pose_at_every_simd_level() {
             let before = rng.clone();
             for surface in &mut surfaces {
                 rng = before.clone();
-                surface.advance(&palette, Similarity::IDENTITY).unwrap();
+                advance(surface, &palette);
                 found += assert_queries_agree(surface, &mut rng, 1);
                 let case = format!("{case}, {}", surface.simd_level());
                 assert_positions_equal(surface, &mesh, &case);
@@ -94,18 +82,14 @@ fn queries_agree_on_skin_that_is_smaller_than_normal_numbers() {
     let mut found = 0;
     for exponent in [38, 40, 41, 42, 43] {
         let scale = (0..exponent).fold(1.0, |scale: f32, _| scale * 0.1);
-        let matrix = Affine {
-            rows: [
-                [scale, 0.0, 0.0, 0.0],
-                [0.0, scale, 0.0, 0.0],
-                [0.0, 0.0, scale, 0.0],
-            ],
-        };
+        let mut matrix = Affine::IDENTITY;
+        for axis in 0..3 {
+            matrix.rows[axis][axis] = scale;
+        }
         let palette = Palette::from_matrices([matrix; 4]);
         for level in SimdLevel::available() {
-            let mesh = crate::testing::tube(4, 8);
-            let mut surface = SkinnedSurface::with_simd_level(mesh, level);
-            surface.advance(&palette, Similarity::IDENTITY).unwrap();
+            let mut surface = SkinnedSurface::with_simd_level(tube(4, 8), level);
+            advance(&mut surface, &palette);
             found += assert_queries_agree(&surface, &mut rng, 5);
         }
     }
@@ -114,14 +98,11 @@ fn queries_agree_on_skin_that_is_smaller_than_normal_numbers() {
 
 #[test]
 fn concurrent_queries_find_the_same_as_one_thread() {
-    let mesh = crate::testing::tube(12, 48);
     let mut rng = fastrand::Rng::with_seed(72);
-    let mut surface = SkinnedSurface::new(mesh);
+    let mut surface = SkinnedSurface::new(tube(12, 48));
     let mut found = 0;
     for tick in 0..20 {
-        let angle = f64::from(tick) * 0.05;
-        let bent = crate::testing::bend(12, glam::DVec3::Z, angle);
-        surface.advance(&bent, Similarity::IDENTITY).unwrap();
+        advance(&mut surface, &bend(12, DVec3::Z, f64::from(tick) * 0.05));
         let questions = questions(&surface, &mut rng, 1);
         // The clone is never skinned ahead, so it counts what the others count.
         let alone = surface.clone();
@@ -139,10 +120,8 @@ fn concurrent_queries_find_the_same_as_one_thread() {
             assert_eq!(touched.bounds_evaluated, diagnostics.bounds_evaluated);
             assert_eq!(touched.clusters_skinned, diagnostics.clusters_skinned);
             assert_eq!(touched.vertices_skinned, diagnostics.vertices_skinned);
-            assert_eq!(
-                touched.triangles_tested,
-                threads * diagnostics.triangles_tested
-            );
+            let tested = threads * diagnostics.triangles_tested;
+            assert_eq!(touched.triangles_tested, tested);
         }
     }
     assert!(found > 1_000, "{found}");
@@ -150,12 +129,11 @@ fn concurrent_queries_find_the_same_as_one_thread() {
 
 #[test]
 fn skinning_ahead_changes_no_result() {
-    let mesh = crate::testing::tube(8, 24);
+    let mesh = tube(8, 24);
     let mut rng = fastrand::Rng::with_seed(73);
     let mut ahead = SkinnedSurface::new(mesh.clone());
     for tick in 0..10 {
-        let bent = crate::testing::bend(8, glam::DVec3::Y, 0.2 * f64::from(tick));
-        ahead.advance(&bent, Similarity::IDENTITY).unwrap();
+        advance(&mut ahead, &bend(8, DVec3::Y, 0.2 * f64::from(tick)));
         ahead.skin_ahead();
         assert!(assert_queries_agree(&ahead, &mut rng, 5) > 100);
         assert_positions_equal(&ahead, &mesh, &format!("tick {tick}"));
@@ -166,13 +144,12 @@ fn skinning_ahead_changes_no_result() {
 
 #[test]
 fn only_a_tick_after_one_that_touched_everything_is_skinned_ahead() {
-    let mesh = crate::testing::tube(8, 24);
+    let mesh = tube(8, 24);
     let mut surface = SkinnedSurface::new(mesh.clone());
-    let bent = crate::testing::bend(8, glam::DVec3::Y, 0.2);
-    let everything = crate::testing::ball(Vec3::ZERO, f32::MAX);
+    let everything = ball(Vec3::ZERO, f32::MAX);
     let mut hits = Vec::new();
     let mut tick = |touch: bool| {
-        surface.advance(&bent, Similarity::IDENTITY).unwrap();
+        advance(&mut surface, &bend(8, DVec3::Y, 0.2));
         let ahead = surface.diagnostics().clusters_skinned;
         if touch {
             surface.in_model().overlap_capsule(&everything, &mut hits);
@@ -189,10 +166,8 @@ fn only_a_tick_after_one_that_touched_everything_is_skinned_ahead() {
 
 #[test]
 fn only_touched_clusters_are_skinned() {
-    let mesh = crate::testing::tube(24, 48);
-    let mut surface = SkinnedSurface::new(mesh.clone());
-    let bent = crate::testing::bend(24, glam::DVec3::Z, 0.05);
-    surface.advance(&bent, Similarity::IDENTITY).unwrap();
+    let mut surface = SkinnedSurface::new(tube(24, 48));
+    advance(&mut surface, &bend(24, DVec3::Z, 0.05));
     assert_eq!(surface.diagnostics().clusters_skinned, 0);
     let far = Ray::new(Vec3::new(0.0, 900.0, 0.0), Vec3::X).unwrap();
     assert_eq!(surface.in_model().cast_ray(&far, 5.0), None);

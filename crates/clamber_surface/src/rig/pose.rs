@@ -24,17 +24,21 @@ impl Pose {
         Ok(blended)
     }
 
+    pub(super) fn check_joint_count(&self, expected: usize) -> Result<(), RigError> {
+        let found = self.transforms.len();
+        if found == expected {
+            Ok(())
+        } else {
+            Err(RigError::JointCount { expected, found })
+        }
+    }
+
     /// [`Pose::blend`] in place: `self` moves towards `other`. Allocates nothing.
     ///
     /// # Errors
     /// As [`Pose::blend`]; then `self` is unchanged.
     pub fn blend_in(&mut self, other: &Self, weight: f64) -> Result<(), RigError> {
-        if other.transforms.len() != self.transforms.len() {
-            return Err(RigError::JointCount {
-                expected: self.transforms.len(),
-                found: other.transforms.len(),
-            });
-        }
+        other.check_joint_count(self.transforms.len())?;
         if weight.is_nan() {
             return Err(RigError::NotFinite {
                 what: "the blend weight".into(),
@@ -104,13 +108,9 @@ mod tests {
         let longer = Pose {
             transforms: vec![Transform::IDENTITY; 2],
         };
-        assert!(matches!(
-            a.blend_in(&longer, 0.5),
-            Err(RigError::JointCount {
-                expected: 1,
-                found: 2
-            })
-        ));
+        let (expected, found) = (1, 2);
+        let refused = RigError::JointCount { expected, found };
+        assert_eq!(a.blend_in(&longer, 0.5), Err(refused));
         assert!(a.blend_in(&before.clone(), f64::NAN).is_err());
         let mut broken = pose(0.0, 0.0);
         broken.transforms[0].rotation = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);

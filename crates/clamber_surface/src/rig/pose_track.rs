@@ -89,10 +89,7 @@ impl PoseTrack {
     ) -> Result<(), RigError> {
         check_time("the pose's time", time, self.clock.newest())?;
         if let Some((last, _)) = self.history.last() {
-            let (expected, found) = (last.pose.transforms.len(), pose.transforms.len());
-            if expected != found {
-                return Err(RigError::JointCount { expected, found });
-            }
+            pose.check_joint_count(last.pose.transforms.len())?;
         }
         let posed = self.copy(pose, world_from_model)?;
         self.clock.record(time)?;
@@ -239,11 +236,8 @@ impl TryFrom<StoredPoseTrack> for PoseTrack {
         history.check_times()?;
         let expected = history.last().map(|(last, _)| last.pose.transforms.len());
         for posed in history.iter() {
-            let found = posed.pose.transforms.len();
-            if let Some(expected) = expected
-                && found != expected
-            {
-                return Err(RigError::JointCount { expected, found });
+            if let Some(expected) = expected {
+                posed.pose.check_joint_count(expected)?;
             }
         }
         for posed in history.iter().chain([&seen]) {

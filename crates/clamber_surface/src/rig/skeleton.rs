@@ -128,12 +128,7 @@ impl Skeleton {
     /// [`RigError::NotFinite`] if a transform is not finite or a rotation has length zero. The palette is unchanged
     /// then.
     pub fn palette_into(&self, pose: &Pose, palette: &mut Palette) -> Result<(), RigError> {
-        if pose.transforms.len() != self.joints.len() {
-            return Err(RigError::JointCount {
-                expected: self.joints.len(),
-                found: pose.transforms.len(),
-            });
-        }
+        pose.check_joint_count(self.joints.len())?;
         pose.validate()?;
         let globals = &mut palette.model_from_joint;
         globals.resize(self.joints.len(), DAffine3::IDENTITY);
@@ -207,10 +202,8 @@ mod tests {
         let palette = skeleton.palette(&pose).unwrap();
         assert_eq!(palette.matrices()[0].rows[0][3], 16.0);
         // A quarter turn of the root about Z lays the chain along Y.
-        pose.transforms[1].rotation = rotation_f32(rotation_from_axis_angle(
-            DVec3::Z,
-            core::f64::consts::FRAC_PI_2,
-        ));
+        let turn = rotation_from_axis_angle(DVec3::Z, core::f64::consts::FRAC_PI_2);
+        pose.transforms[1].rotation = rotation_f32(turn);
         let palette = skeleton.palette(&pose).unwrap();
         let tip = palette.matrices()[0].transform_point(Vec3::ZERO);
         assert!((tip - Vec3::new(10.0, 6.0, 0.0)).length() < 1e-6, "{tip}");
@@ -218,22 +211,16 @@ mod tests {
 
     #[test]
     fn impossible_trees_are_refused() {
-        assert!(matches!(
-            Skeleton::new(vec![joint(Some(1), 0.0), joint(Some(0), 0.0)]),
-            Err(RigError::Cycle(_))
-        ));
-        assert!(matches!(
-            Skeleton::new(vec![joint(Some(0), 0.0)]),
-            Err(RigError::Cycle(JointId(0)))
-        ));
-        assert!(matches!(
-            Skeleton::new(vec![joint(Some(7), 0.0)]),
-            Err(RigError::ParentOutOfRange { .. })
-        ));
-        assert!(matches!(
-            Skeleton::new(vec![joint(None, f32::NAN)]),
-            Err(RigError::NotFinite { .. })
-        ));
+        use RigError as E;
+        let refused = |joints: &[Joint]| Skeleton::new(joints.to_vec()).unwrap_err();
+        let both = refused(&[joint(Some(1), 0.0), joint(Some(0), 0.0)]);
+        assert!(matches!(both, E::Cycle(_)));
+        let own = refused(&[joint(Some(0), 0.0)]);
+        assert!(matches!(own, E::Cycle(JointId(0))));
+        let nobody = refused(&[joint(Some(7), 0.0)]);
+        assert!(matches!(nobody, E::ParentOutOfRange { .. }));
+        let nowhere = refused(&[joint(None, f32::NAN)]);
+        assert!(matches!(nowhere, E::NotFinite { .. }));
     }
 
     #[test]
@@ -258,11 +245,8 @@ mod tests {
         let mut pose = skeleton.rest_pose();
         pose.transforms[0].translation.y = f32::INFINITY;
         assert!(skeleton.palette_into(&pose, &mut palette).is_err());
-        assert!(
-            skeleton
-                .palette_into(&Pose::default(), &mut palette)
-                .is_err()
-        );
+        let empty = skeleton.palette_into(&Pose::default(), &mut palette);
+        assert!(empty.is_err());
         assert_eq!(palette, before);
     }
 }

@@ -54,9 +54,9 @@ pub fn error_bound(mesh: &ColliderMesh, palette: &[Affine], vertex: VertexId) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{BuildOptions, Influence, MeshSource};
-    use crate::rig::JointId;
+    use crate::mesh::Influence;
     use crate::skin::skin;
+    use crate::testing::{bits, influence, separate, skinned_mesh};
     use glam::Vec3;
 
     /// A soup of vertices on random joints, and a palette with shear, mirrors and translations.
@@ -79,20 +79,9 @@ mod tests {
             })
             .collect();
         let given: Vec<Influence> = (0..positions.len() * influences)
-            .map(|_| Influence {
-                joint: JointId(rng.u32(0..joints)),
-                weight: rng.f32() + 1e-3,
-            })
+            .map(|_| influence(rng.u32(0..joints), rng.f32() + 1e-3))
             .collect();
-        let triangles: Vec<[u32; 3]> = (0..20).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-        let source = MeshSource {
-            positions: &positions,
-            triangles: &triangles,
-            influences: &given,
-            joint_count: joints as usize,
-            ..MeshSource::default()
-        };
-        let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+        let mesh = skinned_mesh(&positions, &separate(20), &given, joints as usize);
         (mesh, palette)
     }
 
@@ -121,19 +110,10 @@ mod tests {
         let count = palette.len() as u32;
         let given: Vec<Influence> = (0..3)
             .flat_map(|_| (0..count).zip(weights))
-            .map(|(joint, weight)| Influence {
-                joint: JointId(joint),
-                weight: *weight,
-            })
+            .map(|(joint, weight)| influence(joint, *weight))
             .collect();
-        let source = MeshSource {
-            positions: &[Vec3::ONE, Vec3::X, Vec3::Y],
-            triangles: &[[0, 1, 2]],
-            influences: &given,
-            joint_count: palette.len(),
-            ..MeshSource::default()
-        };
-        let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+        let corners = [Vec3::ONE, Vec3::X, Vec3::Y];
+        let mesh = skinned_mesh(&corners, &[[0, 1, 2]], &given, palette.len());
         skin(&mesh, palette).unwrap()[0]
     }
 
@@ -178,17 +158,12 @@ mod tests {
                 let p = mesh.positions()[v];
                 let mut sum = Vec3::ZERO;
                 for (joint, matrix) in palette.iter().enumerate() {
-                    let weight = mesh
-                        .influences(VertexId(v as u32))
-                        .find(|(j, _)| j.0 as usize == joint)
-                        .map_or(0.0, |(_, w)| w);
+                    let mut influences = mesh.influences(VertexId(v as u32));
+                    let weight = influences.find(|(j, _)| j.0 as usize == joint);
+                    let weight = weight.map_or(0.0, |(_, w)| w);
                     sum += matrix.transform_point(p) * weight;
                 }
-                assert_eq!(
-                    sum.to_array().map(f32::to_bits),
-                    position.to_array().map(f32::to_bits),
-                    "case {case} vertex {v}"
-                );
+                assert_eq!(bits(&[sum]), bits(&[*position]), "case {case} vertex {v}");
             }
         }
     }

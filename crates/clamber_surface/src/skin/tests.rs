@@ -1,15 +1,10 @@
 use super::*;
 use crate::SimdLevel;
 use crate::measure::{skin_clusters, skin_scalar};
-use crate::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use crate::mesh::{ColliderMesh, MeshSource};
 use crate::surface::SkinnedSurface;
-use crate::testing::{bend, tube};
+use crate::testing::{bend, bits, built, tube};
 use glam::{DVec3, Vec3};
-
-fn bits(positions: &[Vec3]) -> Vec<[u32; 3]> {
-    let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
-    positions.iter().map(bits).collect()
-}
 
 #[test]
 fn the_fast_kernel_has_the_bits_of_the_plain_one_at_every_level() {
@@ -50,8 +45,7 @@ fn skin_clusters_writes_one_cluster_after_the_other() {
 #[test]
 fn vertices_without_triangles_are_skinned_as_well() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(3.0, 4.0, 5.0)];
-    let source = MeshSource::rigid(&corners, &[[0, 1, 2]]);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    let mesh = built(&MeshSource::rigid(&corners, &[[0, 1, 2]]));
     let palette = bend(1, DVec3::Z, 0.0);
     assert_eq!(skin(&mesh, palette.matrices()).unwrap(), corners);
     assert!(skin_clusters(&mesh, &[], SimdLevel::best(), &mut Vec::new()).is_err());

@@ -27,12 +27,7 @@ pub fn skin_into(
     palette: &[Affine],
     positions: &mut Vec<Vec3>,
 ) -> Result<(), PaletteError> {
-    if palette.len() != mesh.joint_count() {
-        return Err(PaletteError::JointCount {
-            expected: mesh.joint_count(),
-            found: palette.len(),
-        });
-    }
+    mesh.check_joint_count(palette.len())?;
     skin_checked(mesh, palette, SimdLevel::best(), positions);
     Ok(())
 }
@@ -86,12 +81,7 @@ pub fn skin_clusters(
     level: SimdLevel,
     numbers: &mut Vec<f32>,
 ) -> Result<(), PaletteError> {
-    if palette.len() != mesh.joint_count() {
-        return Err(PaletteError::JointCount {
-            expected: mesh.joint_count(),
-            found: palette.len(),
-        });
-    }
+    mesh.check_joint_count(palette.len())?;
     let clusters = mesh.clusters();
     let rows: usize = clusters.clusters.iter().map(|c| c.rows()).sum();
     numbers.resize(rows * ROW * 3, 0.0);
@@ -113,12 +103,7 @@ pub fn skin_clusters(
 /// # Errors
 /// As [`skin_into`].
 pub fn skin_scalar(mesh: &ColliderMesh, palette: &[Affine]) -> Result<Vec<Vec3>, PaletteError> {
-    if palette.len() != mesh.joint_count() {
-        return Err(PaletteError::JointCount {
-            expected: mesh.joint_count(),
-            found: palette.len(),
-        });
-    }
+    mesh.check_joint_count(palette.len())?;
     let vertices = 0..mesh.positions().len();
     Ok(vertices.map(|v| skin_vertex(mesh, palette, v)).collect())
 }

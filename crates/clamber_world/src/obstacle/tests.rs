@@ -1,15 +1,12 @@
 //! The default methods of an obstacle, compared with a surface's own.
 
-use std::sync::Arc;
-
-use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
-use clamber_surface::rig::Palette;
+use clamber_surface::geometry::Similarity;
 use clamber_surface::surface::SkinnedSurface;
 use glam::Vec3;
 
 use super::*;
 use crate::Attachment;
+use crate::testing::{point, rest, rigid};
 
 /// A creature's skin as an obstacle with only the three required methods, and bounds if wanted.
 struct Least<'a> {
@@ -43,21 +40,13 @@ impl Obstacle for Least<'_> {
 /// Eighty random triangles within two metres, on each axis, of a place 100 m from the origin.
 fn rubble() -> (SkinnedSurface, DVec3) {
     let mut rng = fastrand::Rng::with_seed(22);
-    let positions: Vec<Vec3> = (0..240).map(|_| random(&mut rng).as_vec3() * 2.0).collect();
+    let positions: Vec<Vec3> = (0..240).map(|_| point(&mut rng, 2.0).as_vec3()).collect();
     let triangles: Vec<[u32; 3]> = (0..80).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    let source = MeshSource::rigid(&positions, &triangles);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
-    let mut skin = SkinnedSurface::new(Arc::new(mesh));
+    let mut skin = rigid(&positions, &triangles);
     let place = DVec3::new(60.0, 0.0, -80.0);
-    let palette = Palette::from_matrices([Affine::IDENTITY]);
-    let world_from_model = Similarity::from_translation(place);
-    skin.place(&palette, world_from_model).unwrap();
+    skin.place(&rest(), Similarity::from_translation(place))
+        .unwrap();
     (skin, place)
-}
-
-/// Each coordinate within -1..1.
-fn random(rng: &mut fastrand::Rng) -> DVec3 {
-    DVec3::from([(); 3].map(|()| rng.f64() * 2.0 - 1.0))
 }
 
 #[test]
@@ -71,22 +60,18 @@ fn default_rays_and_closest_points_agree_with_the_surfaces_own() {
             has_bounds,
         };
         for _ in 0..500 {
-            let point = place + random(&mut rng) * 3.0;
+            let from = place + point(&mut rng, 3.0);
             for reach in [0.0, 0.3, 3.0, f64::INFINITY] {
-                let (ours, all) = (
-                    least.closest_point(point, reach),
-                    skin.closest_point(point, reach),
-                );
-                assert_eq!(
-                    ours.map(|contact| contact.distance),
-                    all.map(|contact| contact.distance),
-                    "{point} within {reach}"
-                );
+                let [ours, all] = [&least as &dyn Obstacle, &skin].map(|obstacle| {
+                    let nearest = obstacle.closest_point(from, reach);
+                    nearest.map(|contact| contact.distance)
+                });
+                assert_eq!(ours, all, "{from} within {reach}");
             }
-            let direction = random(&mut rng) * 5.0;
+            let direction = point(&mut rng, 5.0);
             for length in [0.5, 8.0, f64::INFINITY] {
-                let ours = least.cast_ray(point, direction, length);
-                let all = skin.cast_ray(point, direction, length);
+                let ours = least.cast_ray(from, direction, length);
+                let all = skin.cast_ray(from, direction, length);
                 let Some(all) = all else { continue };
                 let ours = ours.expect("a ball of radius 0 hits wherever a ray hits");
                 let apart = all.distance - ours.distance;

@@ -1,31 +1,23 @@
-use std::sync::Arc;
-
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource, TriangleId};
+use clamber_surface::mesh::TriangleId;
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::{CastOptions, SkinnedSurface};
 use glam::{DVec3, Vec3};
 
-use crate::{MaterialPoint, Obstacle, TargetMotion, WorldCapsule};
+use crate::testing::{assert_near, cast, rest, rigid, sweep};
+use crate::{MaterialPoint, Obstacle, WorldCapsule};
 
-/// A level square of side 2 around the model's origin, on one joint.
-fn square() -> SkinnedSurface {
-    let positions = [(-1., -1.), (-1., 1.), (1., 1.), (1., -1.)].map(|(x, z)| Vec3::new(x, 0., z));
-    let source = MeshSource::rigid(&positions, &[[0, 1, 2], [0, 2, 3]]);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
-    SkinnedSurface::new(Arc::new(mesh))
-}
-
-/// 100 km from the origin, ten times as large, turned by 90 degrees about X: the square is upright and faces +Z.
+/// A level square of side 2 on one joint, placed 100 km from the origin, ten times as large, and turned by 90 degrees
+/// about X: it is upright and faces +Z.
 fn placed() -> (SkinnedSurface, Similarity) {
     let world_from_model = Similarity {
         rotation: rotation_from_axis_angle(DVec3::X, core::f64::consts::FRAC_PI_2),
         scale: 10.0,
         translation: DVec3::new(2e5, 30.0, -1e5),
     };
-    let mut surface = square();
-    let palette = Palette::from_matrices([Affine::IDENTITY]);
-    surface.place(&palette, world_from_model).unwrap();
+    let corners = [(-1., -1.), (-1., 1.), (1., 1.), (1., -1.)].map(|(x, z)| Vec3::new(x, 0., z));
+    let mut surface = rigid(&corners, &[[0, 1, 2], [0, 2, 3]]);
+    surface.place(&rest(), world_from_model).unwrap();
     (surface, world_from_model)
 }
 
@@ -145,8 +137,7 @@ fn bounds_enclose_the_creature_over_the_tick_tightly() {
         translation: world_from_model.translation + DVec3::X * 40.0,
         ..world_from_model
     };
-    let palette = Palette::from_matrices([Affine::IDENTITY]);
-    surface.advance(&palette, moved).unwrap();
+    surface.advance(&rest(), moved).unwrap();
     let (center, radius) = Obstacle::bounds(&surface).unwrap();
     // Each corner, before and now.
     for from in [&world_from_model, &moved] {
@@ -171,24 +162,14 @@ fn capsule_queries_are_in_world_metres() {
     let center = world_from_model.translation;
     let at = |x: f64, z: f64| center + DVec3::new(x, 2.0, z);
     let ball = WorldCapsule::ball(at(1.0, 4.0), 1.0);
-    let met =
-        Obstacle::cast_capsule(&surface, &ball, [DVec3::Z * -6.0; 2], TargetMotion::Still).unwrap();
+    let met = cast(&surface, &ball, DVec3::Z * -6.0).unwrap();
     assert!((met.fraction - 0.5).abs() < 2e-5, "{met:?}");
-    assert!(
-        (met.separation_normal - DVec3::Z).length() < 1e-6,
-        "{met:?}"
-    );
-    assert!((met.contact.normal - DVec3::Z).length() < 1e-6, "{met:?}");
-    assert!(
-        (met.contact.point - at(1.0, 0.0)).length() < 1e-5,
-        "{met:?}"
-    );
+    assert_near(met.separation_normal, DVec3::Z, 1e-6, "separation");
+    assert_near(met.contact.normal, DVec3::Z, 1e-6, "normal");
+    assert_near(met.contact.point, at(1.0, 0.0), 1e-5, "point");
     assert!((met.contact.distance - 1.0).abs() < 1.1e-4, "{met:?}");
     assert!(!met.started_inside);
-    assert_eq!(
-        Obstacle::cast_capsule(&surface, &ball, [DVec3::Z * -2.9; 2], TargetMotion::Still),
-        None
-    );
+    assert_eq!(cast(&surface, &ball, DVec3::Z * -2.9), None);
 
     // A rod that leans towards the square, with its ends at 4 m and 2 m. The near end is 10 cm beyond the square's
     // edge.
@@ -208,8 +189,7 @@ fn capsule_queries_are_in_world_metres() {
     // Along 9.1 m the rod's distance falls from 4 m to 2 m; over the edge it is 2.022 m, and measured aslant a little
     // less.
     assert!((1.98..2.01).contains(&nearest), "{contacts:?}");
-    let met =
-        Obstacle::cast_capsule(&surface, &rod, [DVec3::Z * -3.0; 2], TargetMotion::Still).unwrap();
+    let met = cast(&surface, &rod, DVec3::Z * -3.0).unwrap();
     assert!((met.fraction - 0.5).abs() < 0.02, "{met:?}");
 
     // The square moves 2 m nearer over the tick.
@@ -217,20 +197,14 @@ fn capsule_queries_are_in_world_metres() {
         translation: center + DVec3::Z * 2.0,
         ..world_from_model
     };
-    let palette = Palette::from_matrices([Affine::IDENTITY]);
-    surface.advance(&palette, moved).unwrap();
-    let met = Obstacle::cast_capsule(&surface, &ball, [DVec3::Z * -4.0; 2], TargetMotion::Moving)
-        .unwrap();
+    surface.advance(&rest(), moved).unwrap();
+    let met = sweep(&surface, &ball, DVec3::Z * -4.0).unwrap();
     assert!((met.fraction - 0.5).abs() < 3e-5, "{met:?}");
-    assert!(
-        (met.contact.point - at(1.0, 1.0)).length() < 2e-4,
-        "{met:?}"
-    );
-    let met = Obstacle::cast_capsule(&surface, &ball, [DVec3::ZERO; 2], TargetMotion::Moving);
+    assert_near(met.contact.point, at(1.0, 1.0), 2e-4, "point");
+    let met = sweep(&surface, &ball, DVec3::ZERO);
     assert_eq!(met, None, "a metre is left");
     let inside = WorldCapsule::ball(at(1.0, 0.5), 1.0);
-    let met =
-        Obstacle::cast_capsule(&surface, &inside, [DVec3::ZERO; 2], TargetMotion::Moving).unwrap();
+    let met = sweep(&surface, &inside, DVec3::ZERO).unwrap();
     assert!(met.started_inside && met.fraction == 0.0, "{met:?}");
     assert!((met.contact.distance - 0.5).abs() < 1e-5, "{met:?}");
 }
@@ -240,7 +214,7 @@ fn capsules_that_are_not_finite_meet_nothing() {
     let (surface, world_from_model) = placed();
     let center = world_from_model.translation;
     let good = WorldCapsule::ball(center, 1.0);
-    assert!(Obstacle::cast_capsule(&surface, &good, [DVec3::X; 2], TargetMotion::Still).is_some());
+    assert!(cast(&surface, &good, DVec3::X).is_some());
     let mut contacts = Vec::new();
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let place = WorldCapsule {
@@ -248,38 +222,18 @@ fn capsules_that_are_not_finite_meet_nothing() {
             radius: 1.0,
         };
         for capsule in [place, WorldCapsule::ball(place.ends[1], 1.0)] {
-            assert_eq!(
-                Obstacle::cast_capsule(&surface, &capsule, [DVec3::X; 2], TargetMotion::Still),
-                None
-            );
-            assert_eq!(
-                Obstacle::cast_capsule(&surface, &capsule, [DVec3::X; 2], TargetMotion::Moving),
-                None
-            );
+            assert_eq!(cast(&surface, &capsule, DVec3::X), None);
+            assert_eq!(sweep(&surface, &capsule, DVec3::X), None);
             surface.overlap_capsule(&capsule, &mut contacts);
         }
         let by = DVec3::X * bad;
-        assert_eq!(
-            Obstacle::cast_capsule(&surface, &good, [by; 2], TargetMotion::Still),
-            None,
-            "{bad}"
-        );
-        assert_eq!(
-            Obstacle::cast_capsule(&surface, &good, [by; 2], TargetMotion::Moving),
-            None,
-            "{bad}"
-        );
+        assert_eq!(cast(&surface, &good, by), None, "{bad}");
+        assert_eq!(sweep(&surface, &good, by), None, "{bad}");
         let endless = good.with_radius(bad);
-        assert_eq!(
-            Obstacle::cast_capsule(&surface, &endless, [DVec3::X; 2], TargetMotion::Still),
-            None
-        );
+        assert_eq!(cast(&surface, &endless, DVec3::X), None);
     }
     let negative = good.with_radius(-1.0);
-    assert_eq!(
-        Obstacle::cast_capsule(&surface, &negative, [DVec3::X; 2], TargetMotion::Still),
-        None
-    );
+    assert_eq!(cast(&surface, &negative, DVec3::X), None);
     surface.overlap_capsule(&negative, &mut contacts);
     assert!(contacts.is_empty(), "{contacts:?}");
 }

@@ -4,8 +4,8 @@ use std::error::Error;
 
 use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode, StepRules};
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
@@ -101,24 +101,9 @@ impl Walker {
 
 /// The ground: a square of 60 m, perpendicular to Z.
 fn ground() -> Result<SkinnedSurface, Box<dyn Error>> {
-    let corner = |x: f32, y: f32| Vec3::new(x, y, -GROUND as f32);
-    let positions = [
-        corner(-30.0, -30.0),
-        corner(30.0, -30.0),
-        corner(30.0, 30.0),
-        corner(-30.0, 30.0),
-    ];
-    let influence = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &[[0, 1, 2], [0, 2, 3]],
-        influences: &[influence; 4],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let corners = [(-30.0, -30.0), (30.0, -30.0), (30.0, 30.0), (-30.0, 30.0)];
+    let positions = corners.map(|(x, y)| Vec3::new(x, y, -GROUND as f32));
+    let source = MeshSource::rigid(&positions, &[[0, 1, 2], [0, 2, 3]]);
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
     let mut ground = SkinnedSurface::new(std::sync::Arc::new(mesh));
     let rest = Palette::from_matrices([Affine::IDENTITY]);

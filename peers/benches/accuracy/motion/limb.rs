@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use clamber_surface::geometry::{Affine, rotation_from_axis_angle};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshError, MeshSource};
-use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshError, MeshSource};
+use clamber_surface::rig::Palette;
 use clamber_surface::skin::skin_into;
 use clamber_verify::brute_force::Triangles;
 use glam::{DAffine3, DQuat, DVec3, Vec3};
@@ -82,17 +82,7 @@ pub(crate) fn limb() -> Result<Arc<ColliderMesh>, MeshError> {
         triangles.push([first, next, side]);
         triangles.push([last, end + side, end + next]);
     }
-    let influence = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &vec![influence; positions.len()],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&positions, &triangles);
     Ok(Arc::new(
         ColliderMesh::build(&source, &BuildOptions::default())?.0,
     ))

@@ -142,17 +142,14 @@ impl Body {
                     self.push_out();
                 }
             }
-            Method::Speculative => {
+            Method::Speculative | Method::Sweep => {
                 self.pose(&course.palette(time + dt))?;
                 let wanted = self.carried(dt)?;
-                let motion = self.look_ahead(wanted)?;
-                self.center += motion;
-                self.push_out();
-            }
-            Method::Sweep => {
-                self.pose(&course.palette(time + dt))?;
-                let wanted = self.carried(dt)?;
-                let motion = self.sweep(wanted)?;
+                let motion = if self.method == Method::Sweep {
+                    self.sweep(wanted)?
+                } else {
+                    self.look_ahead(wanted)?
+                };
                 self.center += motion;
                 self.push_out();
             }
@@ -270,7 +267,7 @@ impl Body {
             }
             // From the contact on, the sphere moves with the skin. The correction is spread over the tick, so that the
             // motion stays linear.
-            motion += normal * (closing * (1.0 - hit.time) + TOLERANCE);
+            motion += normal * (closing * (1.0 - hit.fraction) + TOLERANCE);
         }
         Ok(motion)
     }

@@ -8,8 +8,8 @@ use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
 
-use clamber_peers::{Plot, Series};
-use clamber_scenes::measure::{Table, measure_folder, quantile};
+use clamber_peers::Plot;
+use clamber_scenes::measure::{Table, measure_file, quantile};
 use clamber_surface::mesh::ColliderMesh;
 use climbers::{GROUND, Stance};
 use glam::DVec3;
@@ -51,52 +51,54 @@ struct Outcome {
     drift: f64,
 }
 
+impl Outcome {
+    /// Runs a tick that starts at `time`, and notes what it took.
+    fn tick(
+        &mut self,
+        body: &mut Body,
+        course: &Course,
+        time: f64,
+        dt: f64,
+    ) -> Result<(), Box<dyn Error>> {
+        let start = Instant::now();
+        body.tick(course, time, dt)?;
+        let us = start.elapsed().as_secs_f64() * 1e6;
+        self.microseconds.push(us);
+        Ok(body.end(course, time + dt)?)
+    }
+}
+
 /// Measures all methods in all scenes.
 pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let mesh = limb()?;
     let (trials, seconds) = if brief { (2, 0.2) } else { (100, 10.0) };
     let mut table = Table::new(&COLUMNS);
-    let mut series: Vec<Series> = Vec::new();
+    let mut plot = Plot {
+        title: "A limb swings into a sphere: depth against cost, a dot for each speed and rate"
+            .into(),
+        x: "us a tick".into(),
+        y: "worst depth at the end of a tick, m".into(),
+        ..Plot::default()
+    };
     for rate in [30.0, 60.0, 120.0] {
         for speed in [5.0, 20.0, 60.0, 100.0] {
             for (method, name) in SPHERES.into_iter().chain(STRUCK) {
                 let swung = swing(&mesh, method, speed, rate, trials)?;
-                report(
-                    &mut table,
-                    &mut series,
-                    ["a limb swings", name],
-                    [speed, rate],
-                    swung,
-                );
+                let scene = ["a limb swings", name];
+                report(&mut table, &mut plot, scene, [speed, rate], swung);
             }
         }
         for speed in [1.0, 5.0] {
             for (method, name) in SPHERES.into_iter().chain(RIDING) {
                 let rode = ride(&mesh, method, speed, rate, seconds)?;
-                report(
-                    &mut table,
-                    &mut series,
-                    ["riding on a limb", name],
-                    [speed, rate],
-                    rode,
-                );
+                let scene = ["riding on a limb", name];
+                report(&mut table, &mut plot, scene, [speed, rate], rode);
             }
         }
     }
     println!("\n{table}");
-    let brief = if brief { "_brief" } else { "" };
-    let folder = measure_folder();
-    let path = folder.join(format!("accuracy_motion{brief}.csv"));
-    table.write_csv(&path)?;
-    println!("written to {}", path.display());
-    let plot = Plot {
-        title: "A limb swings into a sphere: depth against cost, a dot for each speed and rate"
-            .into(),
-        x: "us a tick".into(),
-        y: "worst depth at the end of a tick, m".into(),
-        series,
-    };
-    plot.write_svg(&folder.join(format!("accuracy_motion{brief}.svg")))
+    table.write("accuracy_motion", brief)?;
+    plot.write_svg(&measure_file("accuracy_motion", brief, "svg"))
 }
 
 /// A limb swings into a sphere or a climber. The limb's axis passes the centre at a random distance of up to half the
@@ -131,12 +133,7 @@ fn swing(
         let ticks = ((before + BEYOND) * AT / speed / dt).ceil() as usize;
         for tick in 0..ticks {
             let time = tick as f64 * dt;
-            let start = Instant::now();
-            body.tick(&course, time, dt)?;
-            outcome
-                .microseconds
-                .push(start.elapsed().as_secs_f64() * 1e6);
-            body.end(&course, time + dt)?;
+            outcome.tick(&mut body, &course, time, dt)?;
             let palette = course.palette(time + dt);
             let at = course
                 .model_from_joint(time + dt)
@@ -191,12 +188,7 @@ fn ride(
     };
     for tick in 0..(seconds * rate) as usize {
         let time = tick as f64 * dt;
-        let begin = Instant::now();
-        body.tick(&course, time, dt)?;
-        outcome
-            .microseconds
-            .push(begin.elapsed().as_secs_f64() * 1e6);
-        body.end(&course, time + dt)?;
+        outcome.tick(&mut body, &course, time, dt)?;
         let depth = body.core() - signed_distance(mesh, &course.palette(time + dt), body.center);
         outcome.depths.push(depth.max(0.0));
         // Relative to the limb. Being lifted off counts as well.
@@ -209,7 +201,7 @@ fn ride(
 
 fn report(
     table: &mut Table,
-    series: &mut Vec<Series>,
+    plot: &mut Plot,
     [scene, method]: [&str; 2],
     [speed, rate]: [f64; 2],
     mut outcome: Outcome,
@@ -232,14 +224,6 @@ fn report(
     println!("{}", row.join(", "));
     table.push(row);
     if !rides {
-        let point = (cost, depths[2].max(1e-6));
-        match series.iter_mut().find(|series| series.name == method) {
-            Some(series) => series.points.push(point),
-            None => series.push(Series {
-                name: method.to_owned(),
-                points: vec![point],
-                joined: false,
-            }),
-        }
+        plot.add(method, (cost, depths[2].max(1e-6)));
     }
 }

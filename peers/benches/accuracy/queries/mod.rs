@@ -7,7 +7,7 @@ use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
 
-use clamber_peers::{Answer, Entry, Peer, Unsupported};
+use clamber_peers::{Answer, Entry, Kind, Peer, Unsupported};
 use clamber_scenes::measure::quantile;
 use score::{Report, Score};
 use sets::{Query, Set, sets};
@@ -15,30 +15,13 @@ use sets::{Query, Set, sets};
 /// Number of rounds that are timed.
 const ROUNDS: usize = 7;
 
-/// The kind of a query.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
-    Ray,
-    Overlap,
-    Closest,
-    Cast,
-}
-
-/// All kinds of queries, with their names in the table.
-pub(crate) const KINDS: [(Kind, &str); 4] = [
-    (Kind::Ray, "ray"),
-    (Kind::Overlap, "overlap"),
-    (Kind::Closest, "closest point"),
-    (Kind::Cast, "sphere cast"),
-];
-
 /// Scores all peers on all sets.
 pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let mut report = Report::default();
     let entries = clamber_peers::all();
     for set in sets(if brief { 40 } else { 3_000 })? {
         eprintln!("{} ...", set.name);
-        for (kind, _) in KINDS {
+        for (kind, _) in Kind::ALL {
             let truth: Vec<Expected> = set
                 .queries
                 .iter()

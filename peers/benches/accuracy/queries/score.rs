@@ -2,10 +2,8 @@
 
 use std::error::Error;
 
-use clamber_peers::{Plot, Series};
-use clamber_scenes::measure::{Bound, Cells, Table, measure_folder, quantile};
-
-use super::{KINDS, Kind};
+use clamber_peers::{Kind, Plot};
+use clamber_scenes::measure::{Bound, Cells, Table, measure_file, quantile};
 
 /// Share of the query's reach. A distance that is wrong by more counts as a leak or a false hit, not as an error.
 const LEAK: f64 = 0.01;
@@ -78,8 +76,8 @@ impl Score {
 /// The table and the plots.
 pub(crate) struct Report {
     table: Table,
-    /// The series of each kind of query.
-    plots: Vec<Vec<Series>>,
+    /// One for each kind of query.
+    plots: [Plot; 4],
     /// Nanoseconds of ordinary queries, by kind and peer.
     times: Vec<(Kind, &'static str, f64)>,
 }
@@ -88,7 +86,12 @@ impl Default for Report {
     fn default() -> Self {
         Self {
             table: Table::new(&COLUMNS),
-            plots: vec![Vec::new(); KINDS.len()],
+            plots: Kind::ALL.map(|(_, name)| Plot {
+                title: format!("{name}: error against time, a dot for each set of queries"),
+                x: "ns a query".to_owned(),
+                y: "error that 99 % stay below, m".to_owned(),
+                ..Plot::default()
+            }),
             times: Vec::new(),
         }
     }
@@ -103,9 +106,11 @@ impl Report {
         kind: Kind,
         score: Option<Score>,
     ) -> Result<(), Box<dyn Error>> {
-        let index = KINDS.iter().position(|(known, _)| *known == kind);
+        let index = Kind::ALL.iter().position(|(known, _)| *known == kind);
         let index = index.unwrap_or_default();
-        let mut row = [set, KINDS[index].1, method].map(str::to_owned).to_vec();
+        let mut row = [set, Kind::ALL[index].1, method]
+            .map(str::to_owned)
+            .to_vec();
         let Some(mut score) = score else {
             row.extend(["cannot"; 8].map(str::to_owned));
             self.table.push(row);
@@ -130,15 +135,7 @@ impl Report {
             row.extend(parts.map(|error| format!("{error:.1e}")));
             row.push(format!("{:.1e}", score.latest));
             let point = (score.nanoseconds, parts[1].max(FLOOR));
-            let series = &mut self.plots[index];
-            match series.iter_mut().find(|series| series.name == method) {
-                Some(series) => series.points.push(point),
-                None => series.push(Series {
-                    name: method.to_owned(),
-                    points: vec![point],
-                    joined: false,
-                }),
-            }
+            self.plots[index].add(method, point);
         }
         row.extend([score.leaks, score.false_hits, score.count].map(|count| count.to_string()));
         println!("{}", row.join(", "));
@@ -170,20 +167,10 @@ impl Report {
     pub(crate) fn finish(self, brief: bool) -> Result<(), Box<dyn Error>> {
         self.compare(brief)?;
         println!("\n{}", self.table);
-        let brief = if brief { "_brief" } else { "" };
-        let folder = measure_folder();
-        let path = folder.join(format!("accuracy_queries{brief}.csv"));
-        self.table.write_csv(&path)?;
-        println!("written to {}", path.display());
-        for ((_, name), series) in KINDS.iter().zip(self.plots) {
-            let plot = Plot {
-                title: format!("{name}: error against time, a dot for each set of queries"),
-                x: "ns a query".to_owned(),
-                y: "error that 99 % stay below, m".to_owned(),
-                series,
-            };
-            let name = name.replace(' ', "_");
-            plot.write_svg(&folder.join(format!("accuracy_{name}{brief}.svg")))?;
+        self.table.write("accuracy_queries", brief)?;
+        for ((_, name), plot) in Kind::ALL.iter().zip(self.plots) {
+            let name = format!("accuracy_{}", name.replace(' ', "_"));
+            plot.write_svg(&measure_file(&name, brief, "svg"))?;
         }
         Ok(())
     }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use clamber_peers::ball;
 use clamber_scenes::giant::giant;
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use clamber_surface::rig::{JointId, Palette, Playback};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::rig::Palette;
 use clamber_surface::skin::skin_into;
 use clamber_verify::brute_force::{Corners, Triangles};
 use glam::{DVec3, Vec3};
@@ -48,9 +48,7 @@ enum Aim {
 
 pub(crate) fn sets(queries: usize) -> Result<Vec<Set>, Box<dyn Error>> {
     let giant = giant()?;
-    let walk = giant.clip_like(&["walk"]).ok_or("the giant cannot walk")?;
-    let pose = walk.sample(&giant.rig.skeleton.rest_pose(), 0.4, Playback::Loop)?;
-    let palette = giant.rig.skeleton.palette(&pose)?;
+    let palette = giant.palette("walk", 0.4)?;
     let needles = Arc::new(needles()?);
     let still = Palette::from_matrices([Affine::IDENTITY]);
     let set = |name, mesh: &Arc<ColliderMesh>, palette: &Palette, place, aim| {
@@ -173,16 +171,6 @@ fn query(&[a, b, c]: &Corners, aim: Aim, rng: &mut fastrand::Rng) -> Option<Quer
 /// A closed ball of 6 rings and 2,048 segments, 10 m across. Its triangles are hundreds of times as long as wide.
 fn needles() -> Result<ColliderMesh, Box<dyn Error>> {
     let (positions, triangles) = ball(6, 2_048, |_, _| 5.0);
-    let influence = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &vec![influence; positions.len()],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&positions, &triangles);
     Ok(ColliderMesh::build(&source, &BuildOptions::default())?.0)
 }

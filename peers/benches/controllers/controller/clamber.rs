@@ -9,8 +9,8 @@ use clamber_scenes::controllers::{
     Controller, HEIGHT, Input, Mesh, Motion, PADDING, RADIUS, SNAP, STEP, Set,
 };
 use clamber_surface::geometry::Affine;
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceTag};
-use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::rapier3d::prelude::RigidBodyBuilder;
 use clamber_world::{BodyPoses, Obstacle, ObstacleId, RapierTerrain};
@@ -24,12 +24,12 @@ pub(super) const ENTRIES: [Entry; 2] = [
     Entry {
         name: "clamber on bodies",
         is_ours: true,
-        make: |set| Ok(Box::new(OnBodies::new(set)?)),
+        make: |set| Ours::new(set, Solids::bodies(set)?),
     },
     Entry {
         name: "clamber on skin",
         is_ours: true,
-        make: |set| Ok(Box::new(OnSkin::new(set)?)),
+        make: |set| Ours::new(set, Solids::skin(set)?),
     },
 ];
 
@@ -75,61 +75,36 @@ fn timed(
     Ok(start.elapsed().as_secs_f64() * 1e6)
 }
 
-fn stands(climber: &Climber) -> bool {
-    climber.state().mode == ClimberMode::Standing
+/// The solids of a set.
+enum Solids {
+    Bodies(Box<Bodies>, BodyPoses),
+    /// Surfaces, which are at rest but for their motion.
+    Skin(Vec<(SkinnedSurface, Motion)>, Palette),
 }
 
-struct OnBodies {
-    bodies: Bodies,
-    before: BodyPoses,
+struct Ours {
+    solids: Solids,
     climber: Climber,
     dt: f64,
 }
 
-impl OnBodies {
-    fn new(set: &Set) -> Result<Self, Box<dyn Error>> {
-        Ok(Self {
-            bodies: Bodies::new(set, RigidBodyBuilder::kinematic_position_based)?,
-            before: BodyPoses::new(),
+impl Ours {
+    fn new(set: &Set, solids: Solids) -> Result<Box<dyn Controller>, Box<dyn Error>> {
+        Ok(Box::new(Self {
+            solids,
             climber: climber(set)?,
             dt: set.dt,
-        })
+        }))
     }
 }
 
-impl Controller for OnBodies {
-    fn step(&mut self, time: f64, input: &Input) -> Result<f64, Box<dyn Error>> {
-        let Bodies { world, moving } = &mut self.bodies;
-        self.before.record(&world.bodies);
-        for (handle, motion) in moving {
-            if let Some(body) = world.bodies.get_mut(*handle) {
-                body.set_next_kinematic_position(pose(&motion(time)));
-            }
-        }
-        world.step();
-        let terrain = RapierTerrain::of_world(world, &self.before);
-        let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &terrain)];
-        timed(&mut self.climber, &obstacles, input, self.dt)
+impl Solids {
+    fn bodies(set: &Set) -> Result<Self, Box<dyn Error>> {
+        let bodies = Bodies::new(set, RigidBodyBuilder::kinematic_position_based)?;
+        Ok(Self::Bodies(Box::new(bodies), BodyPoses::new()))
     }
 
-    fn position(&self) -> DVec3 {
-        self.climber.state().position
-    }
-
-    fn stands(&self) -> bool {
-        stands(&self.climber)
-    }
-}
-
-struct OnSkin {
-    surfaces: Vec<(SkinnedSurface, Motion)>,
-    rest: Palette,
-    climber: Climber,
-    dt: f64,
-}
-
-impl OnSkin {
-    fn new(set: &Set) -> Result<Self, Box<dyn Error>> {
+    fn skin(set: &Set) -> Result<Self, Box<dyn Error>> {
         let rest = Palette::from_matrices([Affine::from_f64(&DAffine3::IDENTITY)]);
         let mut surfaces = Vec::new();
         for piece in &set.pieces {
@@ -137,45 +112,43 @@ impl OnSkin {
             surface.place(&rest, (piece.motion)(0.0))?;
             surfaces.push((surface, piece.motion.clone()));
         }
-        Ok(Self {
-            surfaces,
-            rest,
-            climber: climber(set)?,
-            dt: set.dt,
-        })
+        Ok(Self::Skin(surfaces, rest))
     }
 }
 
 /// A collider on one joint.
 fn collider(mesh: &Mesh) -> Result<Arc<ColliderMesh>, Box<dyn Error>> {
     let positions: Vec<_> = mesh.positions.iter().map(|p| p.as_vec3()).collect();
-    let influence = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &mesh.triangles,
-        influences: &vec![influence; positions.len()],
-        influence_ends: &(1..=positions.len() as u32).collect::<Vec<_>>(),
-        tags: &vec![SurfaceTag::default(); mesh.triangles.len()],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&positions, &mesh.triangles);
     let (collider, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
     Ok(Arc::new(collider))
 }
 
-impl Controller for OnSkin {
+impl Controller for Ours {
     fn step(&mut self, time: f64, input: &Input) -> Result<f64, Box<dyn Error>> {
-        for (surface, motion) in &mut self.surfaces {
-            surface.advance(&self.rest, motion(time))?;
+        match &mut self.solids {
+            Solids::Bodies(bodies, before) => {
+                let Bodies { world, moving } = &mut **bodies;
+                before.record(&world.bodies);
+                for (handle, motion) in moving {
+                    if let Some(body) = world.bodies.get_mut(*handle) {
+                        body.set_next_kinematic_position(pose(&motion(time)));
+                    }
+                }
+                world.step();
+                let terrain = RapierTerrain::of_world(world, before);
+                let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &terrain)];
+                timed(&mut self.climber, &obstacles, input, self.dt)
+            }
+            Solids::Skin(surfaces, rest) => {
+                for (surface, motion) in &mut *surfaces {
+                    surface.advance(rest, motion(time))?;
+                }
+                let surfaces = surfaces.iter().map(|(surface, _)| surface as &dyn Obstacle);
+                let obstacles: Vec<_> = (0..).map(ObstacleId).zip(surfaces).collect();
+                timed(&mut self.climber, &obstacles, input, self.dt)
+            }
         }
-        let obstacles = self.surfaces.iter().enumerate();
-        let obstacles: Vec<(ObstacleId, &dyn Obstacle)> = obstacles
-            .map(|(index, (surface, _))| (ObstacleId(index as u64), surface as &dyn Obstacle))
-            .collect();
-        timed(&mut self.climber, &obstacles, input, self.dt)
     }
 
     fn position(&self) -> DVec3 {
@@ -183,6 +156,6 @@ impl Controller for OnSkin {
     }
 
     fn stands(&self) -> bool {
-        stands(&self.climber)
+        self.climber.state().mode == ClimberMode::Standing
     }
 }

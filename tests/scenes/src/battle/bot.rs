@@ -147,9 +147,8 @@ impl Planner {
         let targets: Vec<Target> = targets(life, &graph).into_iter().filter(leads).collect();
         if targets.is_empty() {
             let name = &creature.name;
-            return Err(SceneError::new(format!(
-                "found no way up {name}: no grippable skin leads from near the ground to a weak point; try --story ride"
-            )));
+            let reason = "no grippable skin leads from near the ground to a weak point";
+            return Err(format!("found no way up {name}: {reason}; try --story ride").into());
         }
         let forecast = Forecast::still()
             .then(&graph, "idle", 0.0, 4.5)

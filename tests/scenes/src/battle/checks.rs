@@ -81,19 +81,13 @@ impl Check {
 impl fmt::Display for Check {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let verdict = if self.holds() { "ok" } else { "FAILED" };
-        let Self {
-            name,
-            found,
-            at_most,
-            ..
-        } = self;
+        let (name, found, most) = (self.name, self.found, self.at_most);
         write!(
             f,
-            "  {name:<28}{found:<12.3e} at most {at_most:<8.1e} {verdict}"
+            "  {name:<28}{found:<12.3e} at most {most:<8.1e} {verdict}"
         )?;
-        self.cause
-            .iter()
-            .try_for_each(|cause| write!(f, "\n    {cause}"))
+        let mut cause = self.cause.iter();
+        cause.try_for_each(|cause| write!(f, "\n    {cause}"))
     }
 }
 
@@ -146,22 +140,17 @@ pub struct Watch {
 impl Watch {
     /// Checks a battle after a tick. Call it after every tick.
     pub fn tick(&mut self, battle: &Battle<'_>) {
-        let (climber, drops) = (battle.climber(), battle.counts().drops);
-        let idle = *battle.input() == ClimberInput::default() && !self.slides;
+        let (climber, drops) = (battle.climber(), battle.counts.drops);
+        let idle = battle.input == ClimberInput::default() && !self.slides;
         self.look(battle, climber, idle);
-        if self
-            .drops
-            .replace(drops)
-            .is_some_and(|before| before != drops)
-        {
+        let before = self.drops.replace(drops);
+        if before.is_some_and(|before| before != drops) {
             self.fell(battle, climber.state().position);
             (self.is_down, self.left) = (false, None);
         }
-        for (rock, place, what) in &battle.rocks().faults {
+        for (rock, place, what) in &battle.rocks.faults {
             self.rocks_inside += 1;
-            self.note(ROCKS_INSIDE, || {
-                describe(battle, &format!("rock {rock} {what}"), *place)
-            });
+            self.note(ROCKS_INSIDE, battle, &format!("rock {rock} {what}"), *place);
         }
         let state = climber.state();
         let own = state.velocity - state.base_velocity;
@@ -171,7 +160,7 @@ impl Watch {
         if let Some(mode) = mode {
             self.modes[mode] += 1;
         }
-        let skinned = battle.skinned();
+        let skinned = &battle.skinned;
         self.skinned += skinned.vertices_skinned as f64 / skinned.vertices.max(1) as f64;
     }
 
@@ -226,7 +215,7 @@ impl Watch {
             checks.push(check(FALLS, f64::from(self.falls), 0.0));
         } else if options.is_default_fight() {
             // With other seeds, brains and creatures the climber may lose the fight, or never be knocked over.
-            let counts = battle.counts();
+            let counts = &battle.counts;
             let lives = f64::from(u8::from(counts.killed == 0));
             let points = battle
                 .life()
@@ -273,22 +262,17 @@ impl Watch {
         let support = state
             .support
             .filter(|s| s.attachment.obstacle == CREATURE)?;
-        let place = reference_position(
-            battle.surface(),
-            battle.palette(),
-            &support.attachment.material,
-        );
+        let (surface, palette) = (battle.surface(), battle.palette());
+        let place = reference_position(surface, palette, &support.attachment.material);
         let place = place.unwrap_or(DVec3::INFINITY);
         if state.position.distance(place) > reach(climber) {
             self.out_of_reach += 1;
-            self.note(OUT_OF_REACH, || {
-                describe(battle, "out of reach", state.position)
-            });
+            self.note(OUT_OF_REACH, battle, "out of reach", state.position);
         }
         let drift = support.attachment.point.distance(place);
         if drift > MAX_DRIFT {
             let what = format!("hold {drift:.1e} m from its material point");
-            self.note(DRIFT, || describe(battle, &what, state.position));
+            self.note(DRIFT, battle, &what, state.position);
         }
         Some(drift)
     }
@@ -319,16 +303,11 @@ impl Watch {
         let push_out = report.pushed_out.length();
         if push_out > MAX_PUSH_OUT {
             let what = format!("pushed out by {push_out:.3} m");
-            self.note(PUSH_OUT, || describe(battle, &what, center));
+            self.note(PUSH_OUT, battle, &what, center);
         }
+        let (surface, palette) = (battle.surface(), battle.palette());
         let radius = climber.config().body.radius;
-        let off = Off::measure(
-            battle.surface(),
-            battle.palette(),
-            &recorded,
-            center,
-            radius,
-        );
+        let off = Off::measure(surface, palette, &recorded, center, radius);
         let contact = support.attachment.point.distance(off.point);
         let drift = contact.max(off.sunk);
         if drift > MAX_DRIFT {
@@ -336,7 +315,7 @@ impl Watch {
             let what = format!(
                 "contact {contact:.1e} m from its material point, body {sunk:.1e} m deep in it"
             );
-            self.note(DRIFT, || describe(battle, &what, center));
+            self.note(DRIFT, battle, &what, center);
             // A lost point counts once. Drift below the limit accumulates against the recorded point.
             self.recorded = Some(support.attachment.material);
             return Some(drift);
@@ -344,12 +323,12 @@ impl Watch {
         self.pushed_off = self.pushed_off.max(off.pushed);
         if off.pushed > MAX_PUSHED_OFF {
             let what = format!("pushed off by {:.3} m", off.pushed);
-            self.note(PUSHED_OFF, || describe(battle, &what, center));
+            self.note(PUSHED_OFF, battle, &what, center);
         }
         self.stands_off = self.stands_off.max(off.gap);
         if off.gap > MAX_STANDS_OFF {
             let what = format!("stands off by {:.3} m", off.gap);
-            self.note(STANDS_OFF, || describe(battle, &what, center));
+            self.note(STANDS_OFF, battle, &what, center);
         }
         Some(drift)
     }
@@ -361,7 +340,7 @@ impl Watch {
         if below || look && is_inside(battle.surface(), center) {
             self.inside += 1;
             let what = if below { "below the ground" } else { "inside" };
-            self.note(INSIDE, || describe(battle, what, center));
+            self.note(INSIDE, battle, what, center);
         }
     }
 
@@ -372,9 +351,8 @@ impl Watch {
         let rides = stands_on == Some(CREATURE);
         if self.was_riding && !rides {
             let what = format!("left the creature, {:?}", battle.report().events);
-            let left = describe(battle, &what, state.position);
-            self.note(NOT_RIDING, || left.clone());
-            self.left = Some(left);
+            self.note(NOT_RIDING, battle, &what, state.position);
+            self.left = Some(describe(battle, &what, state.position));
         }
         if stands_on == Some(TERRAIN) {
             self.fell(battle, state.position);
@@ -389,22 +367,24 @@ impl Watch {
             return;
         }
         self.falls += 1;
-        let left = self.left.take();
-        self.note(FALLS, || {
-            left.unwrap_or_else(|| describe(battle, "never came to stand on the creature", place))
-        });
+        if let Some(left) = self.left.take() {
+            self.faults.entry(FALLS).or_insert(left);
+        } else {
+            self.note(FALLS, battle, "never came to stand on the creature", place);
+        }
     }
 
-    /// Keeps the text of `describe` if it is the check's first fault; calls it only then.
-    fn note(&mut self, check: &'static str, describe: impl FnOnce() -> String) {
-        self.faults.entry(check).or_insert_with(describe);
+    /// Keeps the description of a fault if it is the check's first one.
+    fn note(&mut self, check: &'static str, battle: &Battle<'_>, what: &str, place: DVec3) {
+        let first = self.faults.entry(check);
+        first.or_insert_with(|| describe(battle, what, place));
     }
 }
 
 /// Describes a fault `what` at a place: tick, clip, position, and the nearest skin with its speed.
 fn describe(battle: &Battle<'_>, what: &str, place: DVec3) -> String {
     let (tick, surface) = (battle.tick(), battle.surface());
-    let near = surface.closest_point(place, NEAR * battle.height());
+    let near = surface.closest_point(place, NEAR * battle.height);
     let skin = near.map_or("no skin near".into(), |near| {
         let motion = surface.motion(&near.material, TICK);
         let speed = motion.map_or(0.0, |motion| motion.velocity.length());
@@ -412,7 +392,7 @@ fn describe(battle: &Battle<'_>, what: &str, place: DVec3) -> String {
             .mesh()
             .joint_of(TriangleId(near.material.key as u32));
         let joint =
-            joint.and_then(|joint| battle.creature().rig.skeleton.joints().get(joint.index()));
+            joint.and_then(|joint| battle.creature.rig.skeleton.joints().get(joint.index()));
         let (distance, joint) = (near.distance, joint.map_or("no joint", |joint| &joint.name));
         format!("{distance:.3} m from skin of {joint} that moves at {speed:.1} m/s")
     });

@@ -56,9 +56,6 @@ pub(super) struct Choreography<'a> {
 
 impl<'a> Choreography<'a> {
     /// A creature that is scaled to be `height` metres tall in its first pose.
-    ///
-    /// # Errors
-    /// [`SceneError`] if the creature is flat in its first pose, or a clip does not fit its skeleton.
     pub(super) fn new(creature: &'a Creature, height: f64) -> Result<Self, SceneError> {
         let mut acts = acts(creature);
         let rest = creature.rig.skeleton.rest_pose();
@@ -107,9 +104,6 @@ impl<'a> Choreography<'a> {
     }
 
     /// Poses the creature for the current tick: its palette, and its place in the world.
-    ///
-    /// # Errors
-    /// [`SceneError`] if a clip does not fit the skeleton.
     pub(super) fn pose(&mut self) -> Result<(&Palette, Similarity), SceneError> {
         let (now, before, share) = self.moment();
         self.pose.clone_from(&self.rest);
@@ -191,9 +185,7 @@ impl<'a> Choreography<'a> {
 /// The creature cannot be scaled to a height, metres.
 pub(super) fn no_height(creature: &Creature, height: f64) -> SceneError {
     let name = &creature.name;
-    SceneError::new(format!(
-        "{name} has no height in its first pose, so it cannot be scaled to {height} m"
-    ))
+    format!("{name} has no height in its first pose, so it cannot be scaled to {height} m").into()
 }
 
 /// The acts, by the names of the creature's clips.
@@ -201,24 +193,19 @@ pub(super) fn no_height(creature: &Creature, height: f64) -> SceneError {
 /// Idle, walk, and if there is a shake, shake and walk. Without idle and walk: the first pose of the first clip, and
 /// then every clip in turn, except deaths.
 fn acts(creature: &Creature) -> Vec<Act> {
-    let index = |words: &[&str]| {
-        let clip = creature.clip_like(words)?;
-        creature
-            .rig
-            .clips
-            .iter()
-            .position(|other| std::ptr::eq(other, clip))
-    };
     let act = |clip, seconds, walks| Act {
         clip: Some(clip),
         seconds,
         walks,
         repeat: Repeat::Loop,
     };
-    let (idle, walk) = (index(&["idle"]), index(&["walk", "run"]));
+    let (idle, walk) = (
+        creature.clip_index(&["idle"]),
+        creature.clip_index(&["walk", "run"]),
+    );
     if let (Some(idle), Some(walk)) = (idle, walk) {
         let mut acts = vec![act(idle, 6.0, false), act(walk, 16.0, true)];
-        if let Some(shake) = index(&["shake", "attack"]) {
+        if let Some(shake) = creature.clip_index(&["shake", "attack"]) {
             acts.extend([act(shake, 4.0, false), act(walk, 12.0, true)]);
         }
         return acts;

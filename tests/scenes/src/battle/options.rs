@@ -116,15 +116,12 @@ impl BattleOptions {
     }
 
     /// Options from the settings that [`BattleOptions::to_settings`] gave.
-    ///
-    /// # Errors
-    /// [`SceneError`] if the settings are not options of a battle.
     pub fn from_settings(settings: &BTreeMap<String, String>) -> Result<Self, SceneError> {
         let arguments = settings
             .iter()
             .map(|(name, value)| format!("--{name}={value}"));
-        Self::try_parse_from(std::iter::once("battle".to_owned()).chain(arguments))
-            .map_err(SceneError::new)
+        let program = std::iter::once("battle".to_owned());
+        Ok(Self::try_parse_from(program.chain(arguments))?)
     }
 
     /// The creature's brain; `None` in a ride.
@@ -135,14 +132,13 @@ impl BattleOptions {
         let path = match (self.story(), &self.brain) {
             (Story::Ride, None) => return Ok(None),
             (Story::Ride, Some(_)) => {
-                let reason = "a creature lives by its brain in a climb: add --story climb";
-                return Err(SceneError::new(reason));
+                return Err("a creature lives by its brain in a climb: add --story climb".into());
             }
             (Story::Climb, Some(path)) => path.clone(),
             (Story::Climb, None) if self.creature.is_none() => giant::brain_path(),
             (Story::Climb, None) => {
                 let reason = "a creature of a file needs a brain to be fought: add --brain FILE, or --story ride";
-                return Err(SceneError::new(reason));
+                return Err(reason.into());
             }
         };
         let text = std::fs::read_to_string(&path)
@@ -153,9 +149,6 @@ impl BattleOptions {
     }
 
     /// Loads the creature.
-    ///
-    /// # Errors
-    /// [`SceneError`] if its file cannot be loaded.
     pub fn load_creature(&self) -> Result<Creature, SceneError> {
         Ok(match &self.creature {
             Some(path) => Creature::load(path)?,

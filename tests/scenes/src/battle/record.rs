@@ -46,7 +46,7 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
         options: &BattleOptions,
         how: RecordOptions,
     ) -> Result<Self, SceneError> {
-        let creature = battle.creature();
+        let creature = battle.creature;
         let info = RecordingInfo {
             creature: creature.name.clone(),
             creature_fingerprint: fingerprint(battle),
@@ -74,13 +74,10 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
 
     /// Records the current state of the battle: call it before the first tick and after each tick. Adds a snapshot
     /// every second.
-    ///
-    /// # Errors
-    /// [`SceneError`] if the recorder refuses the tick, or the hero cannot be posed.
     pub fn tick(&mut self, battle: &Battle<'_>) -> Result<(), SceneError> {
         self.recorder.tick(&TickView {
             tick: battle.tick(),
-            input: battle.input(),
+            input: &battle.input,
             state: battle.climber().state(),
             report: battle.report(),
             surface: battle.surface(),
@@ -155,7 +152,7 @@ fn scenery(battle: &Battle<'_>) -> Vec<Scenery> {
     if battle.arena().is_some() {
         all.push(still("outcrop", outcrop(), [0.4, 0.38, 0.35]));
     }
-    for (number, (rock, mesh)) in (0..).zip(battle.rocks().meshes(battle.world())) {
+    for (number, (rock, mesh)) in (0..).zip(battle.rocks.meshes(&battle.world)) {
         all.push(Scenery {
             rock: Some(rock),
             ..still(&format!("rock {number}"), mesh, [0.36, 0.34, 0.31])
@@ -166,7 +163,7 @@ fn scenery(battle: &Battle<'_>) -> Vec<Scenery> {
 
 /// Fingerprint of the creature, and of its brain.
 fn fingerprint(battle: &Battle<'_>) -> u64 {
-    let creature = battle.creature();
+    let creature = battle.creature;
     let body = creature_fingerprint(
         &creature.rig.skeleton,
         &creature.rig.clips,
@@ -231,10 +228,9 @@ fn replay_run(recording: &Recording, from: Option<u64>, last: u64) -> Result<Rep
     let rocks = if from.is_some() { 0 } else { options.rocks };
     let mut battle = Battle::new(&creature, &BattleOptions { rocks, ..options })?;
     if fingerprint(&battle) != info.creature_fingerprint {
-        return Err(SceneError::new(format!(
-            "{} is not the creature that was recorded; bring back the files that it and its brain were loaded from",
-            creature.name
-        )));
+        let what = "bring back the files that it and its brain were loaded from";
+        let name = &creature.name;
+        return Err(format!("{name} is not the creature that was recorded; {what}").into());
     }
     let start = match from {
         Some(from) => {
@@ -263,7 +259,7 @@ fn replay_run(recording: &Recording, from: Option<u64>, last: u64) -> Result<Rep
         Ok(_) => None,
         Err(ReplayError::Differs(difference)) => Some(difference),
         Err(ReplayError::Scene { error, .. }) => return Err(error),
-        Err(error) => return Err(SceneError::new(error.to_string())),
+        Err(error) => return Err(error.to_string().into()),
     };
     Ok(Replay {
         from: start,

@@ -5,11 +5,10 @@ use std::time::Instant;
 use clamber_surface::Fingerprint;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::rapier3d::prelude::*;
-use clamber_world::{Debris, DebrisConfig};
 use glam::{DVec3, Vec3};
 
 use super::{CREATURE, SceneError, TICK};
-use crate::rocks::scatter;
+use crate::rocks::FallingRocks;
 use crate::{solid_angle, valley};
 
 /// Height of a creature for which rocks have a scale of 1, metres. Smaller creatures get smaller rocks.
@@ -33,8 +32,7 @@ pub type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
 /// The rocks of a battle, and counts of what happened to them.
 #[derive(Clone, Debug)]
 pub struct Rockfall {
-    debris: Debris,
-    rocks: Vec<RigidBodyHandle>,
+    rocks: FallingRocks,
     scale: f64,
     rng: fastrand::Rng,
     /// Index of the next rock to check for lying in the valley.
@@ -63,17 +61,12 @@ impl Rockfall {
         height: f64,
     ) -> Result<Self, SceneError> {
         let scale = (height / HEIGHT).clamp(SMALLEST, 1.0);
-        let rocks = scatter(world, count, seed, above, scale);
-        let mut debris = Debris::new(DebrisConfig::default());
-        for rock in &rocks {
-            debris.add(*rock, &mut world.bodies, &world.colliders)?;
-        }
+        let rocks = FallingRocks::new(world, count, seed, above, scale)?;
         Ok(Self {
-            debris,
             scale,
             rng: fastrand::Rng::with_seed(seed),
             next: 0,
-            drops: rocks.len() as u32,
+            drops: rocks.bodies.len() as u32,
             near: 0,
             put_back: 0,
             left: 0,
@@ -92,21 +85,7 @@ impl Rockfall {
         above: DVec3,
     ) -> Result<f64, SceneError> {
         let start = Instant::now();
-        let surfaces = [(CREATURE, surface)];
-        let (bodies, colliders) = (&mut world.bodies, &mut world.colliders);
-        self.debris
-            .before_step(&surfaces, bodies, colliders, TICK)?;
-        world.step_with_events(&self.debris, &());
-        let (broad_phase, narrow_phase) = (&world.broad_phase, &world.narrow_phase);
-        let bodies = &mut world.bodies;
-        let report = self.debris.after_step(
-            &surfaces,
-            bodies,
-            &world.colliders,
-            broad_phase,
-            narrow_phase,
-            TICK,
-        )?;
+        let report = self.rocks.step((CREATURE, surface), world, TICK)?;
         let time = start.elapsed().as_secs_f64() * 1e6;
         self.near += u64::from(report.near);
         self.put_back += report.put_back;
@@ -124,11 +103,11 @@ impl Rockfall {
     fn look_inside(&mut self, surface: &SkinnedSurface, world: &PhysicsWorld) {
         let mut positions = Vec::new();
         surface.skin_all(&mut positions);
-        for (index, rock) in self.rocks.iter().enumerate() {
+        for (index, rock) in self.rocks.bodies.iter().enumerate() {
             let place = world.bodies[*rock].translation().as_dvec3();
             let in_model = surface.world_from_model().inverse_transform_point(place);
             let inside = solid_angle::is_inside_skin(&positions, surface, in_model);
-            if inside && !self.debris.is_let_through(*rock) {
+            if inside && !self.rocks.debris.is_let_through(*rock) {
                 self.faults.push((index, place, "inside"));
             }
         }
@@ -137,8 +116,8 @@ impl Rockfall {
     /// Drops rocks again that no ground will stop: those out of the valley, which have a count of their own, and those
     /// under its ground, which are a fault.
     fn bring_back(&mut self, world: &mut PhysicsWorld, above: DVec3) {
-        for index in 0..self.rocks.len() {
-            let body = &mut world.bodies[self.rocks[index]];
+        for index in 0..self.bodies().len() {
+            let body = &mut world.bodies[self.bodies()[index]];
             let place = body.translation().as_dvec3();
             if !valley::contains(place.x, place.z) {
                 self.left += 1;
@@ -155,10 +134,10 @@ impl Rockfall {
 
     /// Drops the next rock that lies in the valley again.
     fn drop_again(&mut self, world: &mut PhysicsWorld, above: DVec3) {
-        for _ in 0..self.rocks.len() {
+        for _ in 0..self.bodies().len() {
             let index = self.next;
-            self.next = (self.next + 1) % self.rocks.len();
-            let place = world.bodies[self.rocks[index]].translation().as_dvec3();
+            self.next = (self.next + 1) % self.bodies().len();
+            let place = world.bodies[self.bodies()[index]].translation().as_dvec3();
             if place.y - valley::height(place.x, place.z) < LIES * self.scale {
                 self.let_fall(index, world, above);
                 return;
@@ -170,7 +149,7 @@ impl Rockfall {
     fn let_fall(&mut self, index: usize, world: &mut PhysicsWorld, above: DVec3) {
         let aside = DVec3::new(self.rng.f64() - 0.5, 0.0, self.rng.f64() - 0.5);
         let place = above + aside * (6.0 * self.scale);
-        let body = &mut world.bodies[self.rocks[index]];
+        let body = &mut world.bodies[self.bodies()[index]];
         body.set_translation(place.as_vec3(), true);
         body.set_linvel(Vector::ZERO, true);
         self.drops += 1;
@@ -178,13 +157,13 @@ impl Rockfall {
 
     /// Handles of the rocks' bodies in the physics world.
     pub fn bodies(&self) -> &[RigidBodyHandle] {
-        &self.rocks
+        &self.rocks.bodies
     }
 
     /// The meshes of the rocks' colliders, each with its rock's body.
     pub fn meshes(&self, world: &PhysicsWorld) -> Vec<(RigidBodyHandle, Triangles)> {
         let mut meshes = Vec::new();
-        for rock in &self.rocks {
+        for rock in self.bodies() {
             for collider in world.bodies[*rock].colliders() {
                 let mesh = match world.colliders[*collider].shape().as_typed_shape() {
                     TypedShape::Ball(ball) => ball.to_trimesh(24, 16),
@@ -200,7 +179,7 @@ impl Rockfall {
 
     /// A 64-bit hash of the rocks' positions and rotations.
     pub(super) fn fingerprint(&self, bodies: &RigidBodySet) -> u64 {
-        let numbers = self.rocks.iter().flat_map(|rock| {
+        let numbers = self.bodies().iter().flat_map(|rock| {
             let body = &bodies[*rock];
             let (place, turn) = (body.translation().to_array(), body.rotation().to_array());
             place.into_iter().chain(turn)

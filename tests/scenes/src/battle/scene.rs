@@ -51,22 +51,31 @@ const ASIDE: f64 = 1.5;
 
 /// The running scene.
 pub struct Battle<'a> {
-    creature: &'a Creature,
+    /// The creature as it was loaded.
+    pub creature: &'a Creature,
     part: Part<'a>,
-    world: PhysicsWorld,
+    /// The physics world: the valley, the outcrop in a climb, and the rocks.
+    pub world: PhysicsWorld,
     before: BodyPoses,
-    rocks: Rockfall,
-    rocks_fingerprint: u64,
+    /// The rocks.
+    pub rocks: Rockfall,
+    /// A 64-bit hash of the rocks' positions and rotations after the last tick.
+    pub rocks_fingerprint: u64,
     /// Fur and stone can be gripped, rather than all skin.
     has_fur: bool,
     /// The point above which the climber is dropped to ride, and from above which rocks fall.
     perch: MaterialPoint,
-    height: f64,
-    counts: Counts,
-    input: ClimberInput,
+    /// Height that the creature is scaled to, metres.
+    pub height: f64,
+    /// What happened so far, in numbers.
+    pub counts: Counts,
+    /// The climber's input in the last tick.
+    pub input: ClimberInput,
     hash: Fingerprint,
-    skinned: Diagnostics,
-    times: Vec<[f64; 2]>,
+    /// What the last tick skinned for the climber, without the rocks' queries.
+    pub skinned: Diagnostics,
+    /// Times of the ticks, microseconds: of pose, script and climber, and of the rocks with physics.
+    pub times: Vec<[f64; 2]>,
 }
 
 /// The climber's opponent: a creature that lives in an arena, or one that plays a timetable.
@@ -177,9 +186,6 @@ impl<'a> Battle<'a> {
     }
 
     /// Runs one tick: in a climb with the bot's input, in a ride with the input that carries out an intent.
-    ///
-    /// # Errors
-    /// [`SceneError`] if a clip does not fit the creature.
     pub fn step(&mut self, intent: Intent) -> Result<(), SceneError> {
         let start = Instant::now();
         let seconds = self.counts.tick as f64 * TICK;
@@ -194,9 +200,6 @@ impl<'a> Battle<'a> {
     }
 
     /// Runs one tick with a given input, such as one from a recording.
-    ///
-    /// # Errors
-    /// [`SceneError`] if a clip does not fit the creature, or the input is not finite.
     pub fn step_with(&mut self, input: ClimberInput) -> Result<(), SceneError> {
         let start = Instant::now();
         if let Part::Rides(ride) = &mut self.part {
@@ -326,11 +329,7 @@ impl<'a> Battle<'a> {
                 ride.climber.restore(state)?;
                 ride.go_to(*time, *walked)?;
             }
-            _ => {
-                return Err(SceneError::new(
-                    "the snapshot is of a climb and the battle a ride, or the other way round",
-                ));
-            }
+            _ => Err("the snapshot is of a climb and the battle a ride, or the other way round")?,
         }
         self.counts = snapshot.counts;
         Ok(())

@@ -27,9 +27,6 @@ pub struct Thing {
 
 impl Thing {
     /// A solid that moves. Fur can be gripped, stone has ledges.
-    ///
-    /// # Errors
-    /// If the solid is no mesh.
     pub fn solid(
         solid: &Solid,
         kind: SurfaceKind,
@@ -178,15 +175,10 @@ impl<'s> Stage<'s> {
 
     /// What there is, for bodies.
     pub fn obstacles(&self) -> Vec<(ObstacleId, &dyn Obstacle)> {
-        let ids = (0..).map(ObstacleId);
-        ids.zip(self.surfaces.iter().map(|surface| surface as &dyn Obstacle))
-            .collect()
+        obstacles(&self.surfaces)
     }
 
     /// The palette of a thing now.
-    ///
-    /// # Errors
-    /// If its clip is not its skeleton's.
     pub fn palette(&self, thing: usize) -> Result<Palette, Box<dyn Error>> {
         self.scene.things[thing].palette(self.time)
     }
@@ -201,9 +193,7 @@ impl<'s> Stage<'s> {
         for (thing, surface) in self.scene.things.iter().zip(&mut self.surfaces) {
             surface.advance(&thing.palette(self.time)?, (thing.motion)(self.time))?;
         }
-        let ids = (0..).map(ObstacleId);
-        let obstacles = ids.zip(self.surfaces.iter().map(|surface| surface as &dyn Obstacle));
-        let obstacles: Vec<_> = obstacles.collect();
+        let obstacles = obstacles(&self.surfaces);
         let rules = if self.scene.grips_all {
             StepRules::by(&|query| query.usual().with_grip(true))
         } else {
@@ -213,4 +203,10 @@ impl<'s> Stage<'s> {
         self.events = report.events;
         Ok(())
     }
+}
+
+fn obstacles(surfaces: &[SkinnedSurface]) -> Vec<(ObstacleId, &dyn Obstacle)> {
+    let ids = (0..).map(ObstacleId);
+    ids.zip(surfaces.iter().map(|surface| surface as &dyn Obstacle))
+        .collect()
 }

@@ -1,20 +1,17 @@
 //! A climber on a creature that keeps still or moves.
 //!
-//! [`climb_by`] lets a bot climb to the highest place that the creature's graph calls reachable. A [`Route`] leads along
-//! the edges of the skin instead, from a foot to the head, for a climber that does not plan.
+//! A route from [`Ways::climb`] leads along the edges of the skin, from a foot to the head, for a climber that does not plan.
 
-mod graph;
 mod moves;
 mod route;
 mod stage;
 
-pub use graph::{ClimbOptions, Climbed, climb_by};
-pub use route::{Route, Ways};
+pub use route::Ways;
 pub use stage::{Motion, Stage};
 
 use clamber_climber::ClimberConfig;
 
-/// Ticks per second along a [`Route`].
+/// Ticks per second along a route.
 pub const RATE: f64 = 60.0;
 
 /// The settings of a climber for long ways: [`ClimberConfig::colossus_climber`], with stamina to hold on for 600 s to a

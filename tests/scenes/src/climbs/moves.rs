@@ -49,12 +49,11 @@ impl Moves {
 
     /// The first clip with one of these words in its name, or else the first clip, in a loop.
     pub(super) fn one(creature: &Creature, words: &[&str], rate: f64) -> Self {
-        let clip = creature.clip_like(words).or(creature.rig.clips.first());
-        let index =
-            clip.and_then(|clip| creature.rig.clips.iter().position(|c| c.name == clip.name));
+        let first = (!creature.rig.clips.is_empty()).then_some(0);
+        let played = creature.clip_index(words).or(first);
         Self {
-            played: index
-                .map(|index| (index, Repeat::Loop))
+            played: played
+                .map(|clip| (clip, Repeat::Loop))
                 .into_iter()
                 .collect(),
             rate,

@@ -13,13 +13,6 @@ const GAP: f32 = 0.04;
 /// Lengths of ways are counted in so many steps per height of the creature.
 const STEPS: f32 = 1e8;
 
-/// A way over a creature, from vertex to vertex.
-#[derive(Clone, Debug)]
-pub struct Route {
-    /// The vertices. Consecutive ones share an edge, or lie on both sides of a gap between two pieces of skin.
-    pub waypoints: Vec<VertexId>,
-}
-
 /// All ways over a creature: a graph of vertices.
 #[derive(Clone, Debug)]
 pub struct Ways {
@@ -32,15 +25,8 @@ pub struct Ways {
 
 impl Ways {
     /// All ways over a creature, at rest.
-    ///
-    /// # Errors
-    /// [`SceneError`] if the rest pose does not fit the collider.
     pub fn new(creature: &Creature) -> Result<Self, SceneError> {
-        let palette = creature
-            .rig
-            .skeleton
-            .palette(&creature.rig.skeleton.rest_pose())?;
-        let rest = clamber_surface::skin::skin(&creature.rig.collider, palette.matrices())?;
+        let rest = creature.at_rest()?;
         let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); rest.len()];
         for corners in creature.rig.collider.triangles() {
             for k in 0..3 {
@@ -60,11 +46,8 @@ impl Ways {
             within.copied().collect()
         };
         let (feet, heads) = (among(0.02, 0.15), among(0.93, 1.0));
-        let groups: Vec<Vec<u32>> = neighbours
-            .iter()
-            .zip(0..)
-            .map(|(all, v)| [&all[..], &[v]].concat())
-            .collect();
+        let groups = neighbours.iter().zip(0..);
+        let groups: Vec<Vec<u32>> = groups.map(|(all, v)| [&all[..], &[v]].concat()).collect();
         let mut piece = vec![0; rest.len()];
         for (index, group) in components(&groups).iter().enumerate() {
             group.iter().for_each(|v| piece[*v as usize] = index);
@@ -88,8 +71,9 @@ impl Ways {
     }
 
     /// A shortest way from a vertex near the ground to one near the top, both chosen by a seed. `None` if 50 such
-    /// choices find no connected pair.
-    pub fn climb(&self, seed: u64) -> Option<Route> {
+    /// choices find no connected pair. Consecutive vertices share an edge, or lie on both sides of a gap between two
+    /// pieces of skin.
+    pub fn climb(&self, seed: u64) -> Option<Vec<VertexId>> {
         let mut rng = fastrand::Rng::with_seed(seed);
         let mut one_of =
             |vertices: &[u32]| vertices.get(rng.usize(0..vertices.len().max(1))).copied();
@@ -103,9 +87,7 @@ impl Ways {
                 })
             };
             let (waypoints, _) = dijkstra(&foot, next, |vertex| *vertex == head)?;
-            Some(Route {
-                waypoints: waypoints.into_iter().map(VertexId).collect(),
-            })
+            Some(waypoints.into_iter().map(VertexId).collect())
         })
     }
 }

@@ -36,8 +36,8 @@ pub struct Stage<'a> {
     triangle_at: Vec<Option<[VertexId; 3]>>,
     place: Similarity,
     /// Height of the ground, metres.
-    pub(super) ground: f64,
-    pub(super) moves: Moves,
+    pub ground: f64,
+    moves: Moves,
     sways: bool,
 }
 
@@ -45,9 +45,6 @@ impl<'a> Stage<'a> {
     /// A creature whose rest pose is `height` metres high, in its first pose. `tempo` is the rate at which
     /// [`Motion::Idle`], [`Motion::Walk`] and [`Motion::Shake`] play their clip. Giants move slower than the creatures
     /// that clips are made for, by the square root of their size.
-    ///
-    /// # Errors
-    /// If the creature cannot be posed, or its clips cannot be measured.
     pub fn new(
         creature: &'a Creature,
         (height, tempo): (f64, f64),
@@ -81,9 +78,6 @@ impl<'a> Stage<'a> {
     }
 
     /// Puts the creature into its pose at a time, seconds, without motion.
-    ///
-    /// # Errors
-    /// [`SceneError`] if a clip does not fit.
     pub fn place(&mut self, time: f64) -> Result<(), SceneError> {
         let (palette, root) = self.pose(time)?;
         Ok(self.surface.place(&palette, root)?)
@@ -95,7 +89,8 @@ impl<'a> Stage<'a> {
         Ok(self.surface.advance(&palette, root)?)
     }
 
-    pub(super) fn pose(&self, time: f64) -> Result<(Palette, Similarity), SceneError> {
+    /// The palette at a time, seconds, and the place of the creature.
+    pub fn pose(&self, time: f64) -> Result<(Palette, Similarity), SceneError> {
         let pose = self.moves.pose(self.creature, time)?;
         let mut root = self.place;
         if self.sways {
@@ -105,8 +100,13 @@ impl<'a> Stage<'a> {
     }
 
     /// The clips that the creature is about to play from a time on, seconds.
-    pub(super) fn forecast(&self, graph: &ClimbGraph, time: f64) -> Forecast {
+    pub fn forecast(&self, graph: &ClimbGraph, time: f64) -> Forecast {
         self.moves.forecast(self.creature, graph, time)
+    }
+
+    /// Seconds of a clip that pass in a second.
+    pub fn rate(&self) -> f64 {
+        self.moves.rate
     }
 
     /// The creature's skin.

@@ -32,9 +32,6 @@ pub struct Duel {
 
 impl Duel {
     /// The giant.
-    ///
-    /// # Errors
-    /// If its files are missing or damaged.
     pub fn kind() -> Result<Arc<CreatureKind>, Box<dyn Error>> {
         let brain = std::fs::read_to_string(giant::brain_path())?;
         let brain = Brain::from_json(&brain, 1.0 / RATE as f64)?;
@@ -50,22 +47,6 @@ impl Duel {
         }
         let ground = HalfSpace::below(0.0);
         Ok(Self { arena, ground })
-    }
-
-    /// An arena that knows the giant, and nobody in it yet: for a late joiner, who gets its state from the others.
-    pub fn empty(kind: &Arc<CreatureKind>) -> Result<Self, ArenaError> {
-        let mut arena = Arena::new(ArenaConfig::default())?;
-        arena.add_kind(Arc::clone(kind))?;
-        let ground = HalfSpace::below(0.0);
-        Ok(Self { arena, ground })
-    }
-
-    /// A third climber joins in the step in which this is given: behind the giant.
-    pub fn joins() -> Order {
-        Order::AddFighter {
-            config: Box::new(FighterConfig::hero()),
-            position: DVec3::new(-4.0, 1.0, -25.0),
-        }
     }
 
     /// What a player does in a tick: a game reads keyboard and mouse here.

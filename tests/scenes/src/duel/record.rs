@@ -26,9 +26,6 @@ const DRAWN: f32 = 100.0;
 /// tick.
 ///
 /// A peer of a rollback session calls it at the end: only then all of its inputs are certain.
-///
-/// # Errors
-/// If the arena refuses an input or an order, or the file cannot be written or read.
 pub fn record(
     kind: &Arc<CreatureKind>,
     steps: impl IntoIterator<Item = (Vec<ClimberInput>, Vec<Order>)>,
@@ -59,9 +56,6 @@ pub fn record(
 }
 
 /// Fights a recorded duel again, from the last saved state at or before a tick, or from the first tick.
-///
-/// # Errors
-/// If the arena refuses an input or an order, or the file cannot be written or read.
 pub fn replay(
     recording: &ArenaRecording,
     from: Option<u64>,

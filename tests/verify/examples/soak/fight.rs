@@ -38,7 +38,7 @@ pub(crate) fn fight(giant: &Creature, seed: u64) -> usize {
         assert!(finite, "tick {tick}: {state:?}");
         let push_out = battle.report().pushed_out;
         assert!(push_out.is_finite(), "tick {tick}: {push_out}");
-        for (_, body) in battle.world().bodies.iter() {
+        for (_, body) in battle.world.bodies.iter() {
             let at = body.translation();
             assert!(at.is_finite(), "tick {tick}: a rock is at {at}");
         }

@@ -7,13 +7,13 @@ mod rider;
 use std::error::Error;
 use std::sync::Arc;
 
-use clamber_climber::{Blow, ClimberInput};
+use clamber_climber::{Blow, ClimberInput, ClimberMode};
 use clamber_colossus::brain::StateId;
 use clamber_colossus::{
-    Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, Noise, Person, Surroundings,
-    Wound,
+    Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, Noise, Person, Riding,
+    Surroundings, Wound,
 };
-use clamber_scenes::{giant, person, valley};
+use clamber_scenes::{giant, valley};
 use clamber_surface::mesh::TriangleId;
 use clamber_world::rapier3d::prelude::*;
 use clamber_world::{BodyPoses, MaterialPoint, Obstacle, ObstacleId, RapierTerrain};
@@ -160,9 +160,7 @@ impl Life {
         let poses = BodyPoses::default();
         let terrain = RapierTerrain::of_world(&self.world, &poses);
         let riders = self.riders.iter();
-        let people: Vec<Person> = riders
-            .map(|rider| person(&rider.climber, rider.id, GIANT))
-            .collect();
+        let people: Vec<Person> = riders.map(person).collect();
         let report = self.giant.step(&Surroundings {
             terrain: &[&terrain],
             creatures: &[],
@@ -316,6 +314,20 @@ impl Life {
             faults.push("no foot was measured".into());
         }
         faults
+    }
+}
+
+/// A rider as the giant senses it.
+fn person(rider: &Rider) -> Person {
+    let (climber, state) = (&rider.climber, rider.climber.state());
+    let support = state.support.filter(|on| on.attachment.obstacle == GIANT);
+    Person {
+        id: rider.id,
+        body: climber.body(),
+        riding: support.map(|support| Riding {
+            at: support.attachment.material,
+            hangs: state.mode == ClimberMode::Hanging,
+        }),
     }
 }
 

@@ -16,7 +16,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use clamber_scenes::SceneError;
+use clamber_scenes::battle::positive;
 use clamber_scenes::giant::giant;
+use clamber_scenes::measure::checked;
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use report::Report;
@@ -49,28 +52,18 @@ struct Options {
     out: PathBuf,
 }
 
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if number > 0.0 && number <= 1e5 => Ok(number),
-        Ok(_) => Err("must be above 0 and at most 100000".into()),
-        Err(error) => Err(error.to_string()),
-    }
+fn main() -> ExitCode {
+    checked("soak", run(&Options::parse()))
 }
 
-fn main() -> ExitCode {
-    let options = Options::parse();
-    let giant = match giant() {
-        Ok(giant) => giant,
-        Err(error) => {
-            eprintln!("the giant cannot be loaded: {error}");
-            return ExitCode::FAILURE;
-        }
-    };
+/// Runs the tasks; true if all checks hold.
+fn run(options: &Options) -> Result<bool, SceneError> {
+    let giant = giant()?;
     let mut report = Report::new(options.seed);
     if let Some(task) = options.case {
         let checks = task.run(&giant, options.minutes, &mut report.times);
         println!("{task}: {checks} checks, all hold");
-        return ExitCode::SUCCESS;
+        return Ok(true);
     }
     findings::keep_panics();
     let start = Instant::now();
@@ -89,15 +82,9 @@ fn main() -> ExitCode {
     bar.finish_and_clear();
     report.minutes = start.elapsed().as_secs_f64() / 60.0;
     println!("{report}");
-    if let Err(error) = report.write(&options.out) {
-        eprintln!("{}: {error}", options.out.display());
-        return ExitCode::FAILURE;
-    }
-    if report.holds() {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    }
+    let written = report.write(&options.out);
+    written.map_err(|error| format!("{}: {error}", options.out.display()))?;
+    Ok(report.holds())
 }
 
 /// A bar with the elapsed and the total time, and the current task; hidden if standard error is not a terminal.

@@ -142,16 +142,14 @@ impl FromStr for Task {
         let seed = rest
             .parse()
             .map_err(|_| format!("{rest:?} is not a seed"))?;
-        if kind == "battle" {
-            return Ok(Self::Battle(seed));
-        }
-        if kind == "arena" {
-            return Ok(Self::Arena(seed));
-        }
-        if kind == "life" {
-            return Ok(Self::Life(seed));
-        }
-        let target = Target::ALL.into_iter().find(|target| target.name() == kind);
-        Ok(Self::Fuzz(target.ok_or_else(kinds)?, seed))
+        Ok(match kind {
+            "battle" => Self::Battle(seed),
+            "arena" => Self::Arena(seed),
+            "life" => Self::Life(seed),
+            _ => {
+                let target = Target::ALL.into_iter().find(|target| target.name() == kind);
+                Self::Fuzz(target.ok_or_else(kinds)?, seed)
+            }
+        })
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{Among, Cast, Question, Shape};
+use super::{Among, Cast, Line, Question, Shape};
 
 /// Makes random points, shapes and questions around triangles.
 #[derive(Debug)]
@@ -74,25 +74,15 @@ impl<'a> Aims<'a> {
             ("ray at vertex", [self.off(vertex, 1.5), vertex]),
             ("ray past", [self.off(past, 2.0), beside]),
         ];
-        questions.extend(rays.map(|(name, [origin, to])| {
-            let ray = Question::CastRay {
-                origin,
-                direction: to - origin,
-                max_distance: f32::INFINITY,
-            };
-            (name, ray)
-        }));
-        let direction = across - from;
-        let any = Question::IntersectsRay {
-            origin: from,
-            direction,
-            max_distance: f32::INFINITY,
+        let line = |[origin, to]: [Vec3; 2], max_distance| Line {
+            origin,
+            direction: to - origin,
+            max_distance,
         };
-        let all = Question::CastRayAll {
-            origin: from,
-            direction,
-            max_distance: 4.0 * self.unit,
-        };
+        let cast = |way| Question::CastRay(line(way, f32::INFINITY));
+        questions.extend(rays.map(|(name, way)| (name, cast(way))));
+        let any = Question::IntersectsRay(line([from, across], f32::INFINITY));
+        let all = Question::CastRayAll(line([from, across], 4.0 * self.unit));
         questions.extend([("any along", any), ("all along", all)]);
     }
 

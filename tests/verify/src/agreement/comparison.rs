@@ -186,6 +186,8 @@ mod tests {
         result.err().map(|disagreement| disagreement.field)
     }
 
+    type Change = fn(&mut Hit);
+
     #[test]
     fn every_bit_counts() {
         let hit = Found::Hit(HIT);
@@ -194,94 +196,38 @@ mod tests {
         assert_eq!(wrong(&[hit], &[]), Some("number of rows"));
         assert_eq!(wrong(&[hit], &[hit, hit]), Some("number of rows"));
         assert_eq!(wrong(&[hit], &[Found::Any]), Some("kind"));
-        let others = [
-            ("mesh", Hit { mesh: 8, ..HIT }),
-            ("triangle", Hit { triangle: 4, ..HIT }),
-            ("part", Hit { part: 4, ..HIT }),
-            ("tag", Hit { tag: 4, ..HIT }),
-            (
-                "barycentric",
-                Hit {
-                    barycentric: [0.25, 0.5, 0.25],
-                    ..HIT
-                },
-            ),
-            (
-                "point",
-                Hit {
-                    point: Vec3::ZERO.with_y(-0.0),
-                    ..HIT
-                },
-            ),
-            (
-                "normal",
-                Hit {
-                    normal: Vec3::Z,
-                    ..HIT
-                },
-            ),
-            (
-                "distance",
-                Hit {
-                    distance: -0.0,
-                    ..HIT
-                },
-            ),
+        let changes: [(&str, Change); 8] = [
+            ("mesh", |hit| hit.mesh = 8),
+            ("triangle", |hit| hit.triangle = 4),
+            ("part", |hit| hit.part = 4),
+            ("tag", |hit| hit.tag = 4),
+            ("barycentric", |hit| hit.barycentric = [0.25, 0.5, 0.25]),
+            ("point", |hit| hit.point.y = -0.0),
+            ("normal", |hit| hit.normal = Vec3::Z),
+            ("distance", |hit| hit.distance = -0.0),
         ];
-        for (field, other) in others {
+        for (field, change) in changes {
+            let mut other = HIT;
+            change(&mut other);
             assert_eq!(wrong(&[hit], &[Found::Hit(other)]), Some(field));
         }
     }
 
     #[test]
     fn answers_that_agree_may_be_invalid() {
-        let invalid = [
-            (
-                "barycentric",
-                Hit {
-                    barycentric: [1.0, 0.25, 0.25],
-                    ..HIT
-                },
-            ),
-            (
-                "barycentric",
-                Hit {
-                    barycentric: [1.25, -0.25, 0.0],
-                    ..HIT
-                },
-            ),
-            (
-                "point",
-                Hit {
-                    point: Vec3::NAN,
-                    ..HIT
-                },
-            ),
-            (
-                "normal",
-                Hit {
-                    normal: Vec3::ZERO,
-                    ..HIT
-                },
-            ),
-            (
-                "distance",
-                Hit {
-                    distance: f64::INFINITY,
-                    ..HIT
-                },
-            ),
-            (
-                "distance",
-                Hit {
-                    distance: -1.0,
-                    ..HIT
-                },
-            ),
+        let faults: [(&str, Change); 6] = [
+            ("barycentric", |hit| hit.barycentric = [1.0, 0.25, 0.25]),
+            ("barycentric", |hit| hit.barycentric = [1.25, -0.25, 0.0]),
+            ("point", |hit| hit.point = Vec3::NAN),
+            ("normal", |hit| hit.normal = Vec3::ZERO),
+            ("distance", |hit| hit.distance = f64::INFINITY),
+            ("distance", |hit| hit.distance = -1.0),
         ];
-        for (field, hit) in invalid {
+        for (field, spoil) in faults {
+            let mut hit = HIT;
+            spoil(&mut hit);
             let row = Found::Hit(hit);
-            assert_eq!(wrong(&[row], &[row]), Some(field));
+            assert_eq!(wrong(&[row], &[row]), Some(field), "{hit:?}");
         }
         let contact = |fraction, separation_normal, started_inside| Found::Contact {
             hit: HIT,

@@ -15,10 +15,11 @@
 //!
 //! impl Answers for Floor {
 //!     fn answer(&self, question: &Question, found: &mut Vec<Found>) {
-//!         if let Question::IntersectsRay { origin, direction, max_distance } = question {
-//!             let way = direction.normalize_or_zero().y;
-//!             let distance = (self.height - origin.y) / way;
-//!             found.extend((distance >= 0.0 && distance <= *max_distance).then_some(Found::Any));
+//!         if let Question::IntersectsRay(line) = question {
+//!             let way = line.direction.normalize_or_zero().y;
+//!             let distance = (self.height - line.origin.y) / way;
+//!             let is_met = distance >= 0.0 && distance <= line.max_distance;
+//!             found.extend(is_met.then_some(Found::Any));
 //!         }
 //!     }
 //! }
@@ -54,4 +55,4 @@ mod question;
 pub use aims::{Aims, extent, point_of, weights};
 pub use answer::{Found, Hit};
 pub use comparison::{Agreement, Answers, Comparison, Disagreement};
-pub use question::{Among, Cast, Question, Shape};
+pub use question::{Among, Cast, Line, Question, Shape};

@@ -5,32 +5,11 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Question {
     /// The first hit along a ray: at most one [`Found::Hit`](super::Found::Hit).
-    CastRay {
-        /// Start of the ray.
-        origin: Vec3,
-        /// Direction of the ray, of any length.
-        direction: Vec3,
-        /// Largest distance of a hit.
-        max_distance: f32,
-    },
+    CastRay(Line),
     /// Whether a ray hits the surface: one [`Found::Any`](super::Found::Any) if it does, otherwise no row.
-    IntersectsRay {
-        /// Start of the ray.
-        origin: Vec3,
-        /// Direction of the ray, of any length.
-        direction: Vec3,
-        /// Largest distance of a hit.
-        max_distance: f32,
-    },
+    IntersectsRay(Line),
     /// All hits along a ray, by distance.
-    CastRayAll {
-        /// Start of the ray.
-        origin: Vec3,
-        /// Direction of the ray, of any length.
-        direction: Vec3,
-        /// Largest distance of a hit.
-        max_distance: f32,
-    },
+    CastRayAll(Line),
     /// The nearest point of the surface: at most one [`Found::Hit`](super::Found::Hit).
     ClosestPoint {
         /// The point.
@@ -72,6 +51,17 @@ pub enum Question {
     },
 }
 
+/// A ray, and how far it goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// Start of the ray.
+    pub origin: Vec3,
+    /// Direction of the ray, of any length.
+    pub direction: Vec3,
+    /// Largest distance of a hit.
+    pub max_distance: f32,
+}
+
 /// A capsule; a ball if both ends are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
@@ -108,22 +98,15 @@ pub enum Among {
 impl Question {
     /// The three questions about one ray: its first hit, whether it has a hit, and all its hits.
     pub fn along_ray(origin: Vec3, direction: Vec3, max_distance: f32) -> [Self; 3] {
+        let line = Line {
+            origin,
+            direction,
+            max_distance,
+        };
         [
-            Self::CastRay {
-                origin,
-                direction,
-                max_distance,
-            },
-            Self::IntersectsRay {
-                origin,
-                direction,
-                max_distance,
-            },
-            Self::CastRayAll {
-                origin,
-                direction,
-                max_distance,
-            },
+            Self::CastRay(line),
+            Self::IntersectsRay(line),
+            Self::CastRayAll(line),
         ]
     }
 }

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 use super::Case;
 use super::place::{across, direction, point, turned};
-use crate::{Core, MovingPair};
+use crate::MovingPair;
 
 /// The difficulty of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,11 +101,11 @@ pub fn adversarial(kind: Kind, rng: &mut fastrand::Rng) -> Case {
 
 impl Draft {
     fn rounded(&self, is_sphere: bool) -> Case {
-        let [ends, motions] = [self.ends, self.motions].map(|points| points.map(|p| p.as_vec3()));
         Case {
             pair: MovingPair {
                 corners: self.corners.map(|corners| corners.map(|p| p.as_vec3())),
-                core: core(ends, motions, is_sphere),
+                ends: core(self.ends.map(|p| p.as_vec3()), is_sphere),
+                motions: core(self.motions.map(|p| p.as_vec3()), is_sphere),
                 radius: self.radius as f32,
             },
             tolerance: self.tolerance as f32,
@@ -113,15 +113,9 @@ impl Draft {
     }
 }
 
-fn core(ends: [Vec3; 2], motions: [Vec3; 2], is_sphere: bool) -> Core {
-    if is_sphere {
-        Core::Sphere {
-            center: ends[0],
-            motion: motions[0],
-        }
-    } else {
-        Core::Capsule { ends, motions }
-    }
+/// Ends or motions of a capsule, or those of a sphere, which has the first one twice.
+fn core([a, b]: [Vec3; 2], is_sphere: bool) -> [Vec3; 2] {
+    [a, if is_sphere { a } else { b }]
 }
 
 /// A random draft: the core moves roughly towards the triangle's place at time 1.
@@ -241,12 +235,10 @@ fn slide(draft: &Draft, rng: &mut fastrand::Rng) -> Case {
     for corner in case.pair.corners[1].iter_mut() {
         corner[axis] = level + travel;
     }
-    let [mut ends, mut motions] = case.pair.ends();
-    for (end, motion) in ends.iter_mut().zip(&mut motions) {
+    for (end, motion) in case.pair.ends.iter_mut().zip(&mut case.pair.motions) {
         end[axis] = level + gap;
         motion[axis] = travel;
     }
-    case.pair.core = core(ends, motions, matches!(case.pair.core, Core::Sphere { .. }));
     case
 }
 
@@ -294,7 +286,8 @@ fn collapse(draft: &mut Draft, rng: &mut fastrand::Rng) {
 
 /// Triangle and core are side by side, a few f32 steps apart, with denormal displacements.
 fn denormal(draft: &Draft, rng: &mut fastrand::Rng) -> Case {
-    let mut case = draft.rounded(rng.bool());
+    let is_sphere = rng.bool();
+    let mut case = draft.rounded(is_sphere);
     let size = [1.0, 1.0, 1e-20, 1e-38][rng.usize(0..4)];
     let corners = case.pair.corners[0].map(|p| p * size);
     // Near the origin a denormal displacement moves a corner; elsewhere it is lost to rounding.
@@ -313,8 +306,8 @@ fn denormal(draft: &Draft, rng: &mut fastrand::Rng) -> Case {
             end[axis] = end[axis].next_up();
         }
     }
-    let motions = [slow(rng), slow(rng)];
-    case.pair.core = core(ends, motions, matches!(case.pair.core, Core::Sphere { .. }));
+    case.pair.ends = core(ends, is_sphere);
+    case.pair.motions = core([slow(rng), slow(rng)], is_sphere);
     case
 }
 
@@ -336,9 +329,10 @@ fn still(draft: &Draft, rng: &mut fastrand::Rng) -> Case {
     let near = draft.corners[0][0] + direction(rng) * (draft.radius + draft.tolerance * 2.0);
     let first = coarse([near, draft.ends[0]][rng.usize(0..2)]);
     let ends = [first, first + coarse(draft.ends[1] - draft.ends[0])];
-    let mut case = draft.rounded(rng.bool());
+    let is_sphere = rng.bool();
+    let mut case = draft.rounded(is_sphere);
     case.pair.corners = [corners, corners.map(|p| p + shift)];
-    let is_sphere = matches!(case.pair.core, Core::Sphere { .. });
-    case.pair.core = core(ends, [shift; 2], is_sphere);
+    case.pair.ends = core(ends, is_sphere);
+    case.pair.motions = [shift; 2];
     case
 }

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::Case;
-use crate::{Core, MovingPair};
+use crate::MovingPair;
 
 /// The known part of the answer to a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,18 +92,12 @@ impl Draft {
         };
         let [start, end] = self.corners;
         let (ends, motions) = (two(self.ends)?, two(self.motions)?);
-        let core = if self.is_edge {
-            Core::Capsule { ends, motions }
-        } else {
-            Core::Sphere {
-                center: ends[0],
-                motion: motions[0],
-            }
-        };
+        let [ends, motions] = [ends, motions].map(|[a, b]| [a, if self.is_edge { b } else { a }]);
         Some(Case {
             pair: MovingPair {
                 corners: [all(start)?, all(end)?],
-                core,
+                ends,
+                motions,
                 radius: length(self.radius)?,
             },
             tolerance: length(TOLERANCE)?,

@@ -19,9 +19,6 @@ pub use report::CcdReport;
 pub use stage::{Answer, CAP, Stage};
 
 /// Runs all queries of all files. Shows a progress bar on standard error.
-///
-/// # Errors
-/// If a file cannot be read, or the library rejects a query.
 pub fn run(options: &CcdOptions) -> Result<CcdReport, Box<dyn Error>> {
     let mut files = Vec::new();
     for file in &options.files {
@@ -40,7 +37,7 @@ pub fn run(options: &CcdOptions) -> Result<CcdReport, Box<dyn Error>> {
             let (pair, tolerance) = (query.rounded(), query.tolerance());
             let answer = stage.sweep(&pair, tolerance);
             let answer =
-                answer.map_err(|error| format!("{}:{}: {error}", file.display(), query.line()))?;
+                answer.map_err(|error| format!("{}:{}: {error}", file.display(), query.line))?;
             took += answer.took;
             report.worst_steps = report.worst_steps.max(answer.steps);
             report.count(query, &answer.claim());
@@ -65,11 +62,11 @@ impl CcdReport {
         self.undecided += usize::from(claim.undecided);
         let Some(time) = claim.time else {
             self.misses += 1;
-            self.false_negatives += usize::from(query.touches());
+            self.false_negatives += usize::from(query.touches);
             return;
         };
         self.hits += 1;
-        self.near_misses_hit += usize::from(!query.touches());
+        self.near_misses_hit += usize::from(!query.touches);
         let motion = Motion::of_exact(query.exact());
         if !motion.exact().is_within(time, &number(query.reach())) {
             match motion.apart(query.reach(), 1.0, Last::Included) {

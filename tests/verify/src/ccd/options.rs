@@ -20,10 +20,3 @@ pub struct CcdOptions {
     #[arg(long)]
     pub json: bool,
 }
-
-impl CcdOptions {
-    /// Parses the command line. For `--help` or a wrong argument it prints a message and exits.
-    pub fn from_command_line() -> Self {
-        Self::parse()
-    }
-}

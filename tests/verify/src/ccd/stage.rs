@@ -1,8 +1,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::MovingPair;
 use crate::exact::Claim;
-use crate::{Core, MovingPair};
 use clamber_surface::geometry::{Affine, Capsule, Similarity};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshError, MeshSource};
 use clamber_surface::rig::{JointId, Palette};
@@ -43,9 +43,6 @@ impl Answer {
 
 impl Stage {
     /// A stage with the triangle at rest.
-    ///
-    /// # Errors
-    /// None are known.
     pub fn new() -> Result<Self, MeshError> {
         let whole = |joint| Influence {
             joint: JointId(joint),
@@ -73,16 +70,11 @@ impl Stage {
         let [start, end] = pair.corners;
         self.surface.place(&palette(start), Similarity::IDENTITY)?;
         self.surface.advance(&palette(end), Similarity::IDENTITY)?;
-        let radius = pair.radius;
         let begin = Instant::now();
-        let (ends, motions) = match pair.core {
-            Core::Sphere { center, motion } => ([center; 2], [motion; 2]),
-            Core::Capsule { ends, motions } => (ends, motions),
-        };
         let options = CastOptions::MOVING.with_tolerance(tolerance.into());
-        let capsule = Capsule::new(ends[0], ends[1], radius);
+        let capsule = Capsule::new(pair.ends[0], pair.ends[1], pair.radius);
         let space = self.surface.in_model();
-        let hit = capsule.and_then(|capsule| space.cast_capsule(&capsule, motions, &options));
+        let hit = capsule.and_then(|capsule| space.cast_capsule(&capsule, pair.motions, &options));
         let took = begin.elapsed();
         let steps = self.surface.diagnostics().most_cast_steps;
         Ok(Answer { hit, steps, took })

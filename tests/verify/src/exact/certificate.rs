@@ -258,7 +258,7 @@ impl<'a> Motion<'a> {
 /// The vectors from the corners to the ends, each coordinate rounded once; `None` if an end at time 1 is not
 /// exact in f64.
 fn lines(pair: &MovingPair) -> Option<[[[DVec3; 3]; 2]; 2]> {
-    let [ends, motions] = pair.ends().map(|points| points.map(|p| p.as_dvec3()));
+    let [ends, motions] = [pair.ends, pair.motions].map(|points| points.map(|p| p.as_dvec3()));
     let [first, last] = pair.corners.map(|corners| corners.map(|p| p.as_dvec3()));
     let mut lines = [[[DVec3::ZERO; 3]; 2]; 2];
     for ((line, end), motion) in lines.iter_mut().zip(ends).zip(motions) {

@@ -3,16 +3,14 @@
 //! ```
 //! use clamber_verify::exact::Claim;
 //! use clamber_verify::glam::Vec3;
-//! use clamber_verify::{Core, MovingPair};
+//! use clamber_verify::MovingPair;
 //!
 //! // A ball of 0.25 m falls by 2 m, from 1 m above a triangle at rest: it touches after 0.75 m, at 0.375 of the way.
 //! let corners = [Vec3::ZERO, Vec3::X, Vec3::Z];
 //! let pair = MovingPair {
 //!     corners: [corners; 2],
-//!     core: Core::Sphere {
-//!         center: Vec3::new(0.25, 1.0, 0.25),
-//!         motion: Vec3::Y * -2.0,
-//!     },
+//!     ends: [Vec3::new(0.25, 1.0, 0.25); 2],
+//!     motions: [Vec3::Y * -2.0; 2],
 //!     radius: 0.25,
 //! };
 //! let claim = |time| Claim { time, undecided: false };

@@ -42,7 +42,7 @@ impl From<&MovingPair> for ExactPair {
     /// # Panics
     /// If a coordinate is not finite.
     fn from(pair: &MovingPair) -> Self {
-        let [ends, motions] = pair.ends().map(|points| points.map(exact));
+        let [ends, motions] = [pair.ends, pair.motions].map(|points| points.map(exact));
         let later = [0, 1].map(|k| plus(&ends[k], &motions[k]));
         Self {
             corners: pair.corners.map(|corners| corners.map(exact)),

@@ -26,9 +26,6 @@ pub fn read_queries(file: &Path) -> Result<Vec<FileQuery>, Box<dyn Error>> {
 }
 
 /// Parses the queries of a file's text. The path `file` gives their kind, and is named in errors.
-///
-/// # Errors
-/// As [`read_queries`].
 pub fn parse_queries(file: &Path, text: &str) -> Result<Vec<FileQuery>, Box<dyn Error>> {
     let name = file.display();
     let kind = kind_of(file)

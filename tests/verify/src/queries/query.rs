@@ -1,8 +1,7 @@
 use dashu_ratio::Relaxed;
-use glam::Vec3;
 
+use crate::MovingPair;
 use crate::exact::{Exact, ExactPair, exact, minus, rounded};
-use crate::{Core, MovingPair};
 
 /// The two shapes of a query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,8 +19,10 @@ pub struct FileQuery {
     /// At time 0 and at time 1: the vertex and the face, or the ends of one edge and of the other. Relative
     /// to the first point at time 0.
     points: [[Exact; 4]; 2],
-    touches: bool,
-    line: usize,
+    /// True if the two shapes touch at some time, according to the file.
+    pub touches: bool,
+    /// The line of its first row in the file, from 1.
+    pub line: usize,
     extent: f64,
 }
 
@@ -59,16 +60,6 @@ impl FileQuery {
             line,
             extent,
         })
-    }
-
-    /// True if the two shapes touch at some time, according to the file.
-    pub fn touches(&self) -> bool {
-        self.touches
-    }
-
-    /// The line of its first row in the file, from 1.
-    pub fn line(&self) -> usize {
-        self.line
     }
 
     /// The radius for a sweep: 1e-5 of the extent, which is the largest side of the bounding box of all
@@ -113,19 +104,10 @@ impl FileQuery {
         let starts_rounded = starts.each_ref().map(round);
         // The displacement is computed from the rounded start, so that the end, too, is off by only one rounding.
         let motion = |k: usize| round(&minus(&lasts[k], &exact(starts_rounded[k])));
-        let motions: [Vec3; 2] = [motion(0), motion(1)];
         MovingPair {
             corners: corners.each_ref().map(|c| c.each_ref().map(round)),
-            core: match self.kind {
-                QueryKind::VertexFace => Core::Sphere {
-                    center: starts_rounded[0],
-                    motion: motions[0],
-                },
-                QueryKind::EdgeEdge => Core::Capsule {
-                    ends: starts_rounded,
-                    motions,
-                },
-            },
+            ends: starts_rounded,
+            motions: [motion(0), motion(1)],
             radius: self.radius(),
         }
     }

@@ -26,6 +26,16 @@ struct Mover {
 }
 
 impl Mover {
+    fn of(cast: &Cast) -> Self {
+        Self {
+            start: cast.shape.ends.map(|end| end.as_dvec3()),
+            ways: cast.displacements.map(|way| way.as_dvec3()),
+            radius: cast.shape.radius.into(),
+            tolerance: cast.tolerance.unwrap_or_default(),
+            sweeps: cast.moving,
+        }
+    }
+
     /// The segment at a time.
     fn at(&self, time: f64) -> [DVec3; 2] {
         [0, 1].map(|k| self.start[k] + self.ways[k] * time)
@@ -50,13 +60,12 @@ impl Mover {
 pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -> usize {
     let mut checked = 0;
     for round in 0..rounds {
-        let sweeps = round % 2 == 0;
         let triangle = posed.any_triangle(rng);
         let weights = weights(rng);
         let unit = posed.extent;
         let radius = unit * libm::exp10f(-3.0 + 2.0 * rng.f32());
         // The motion starts at a random place nearby, and ends within the radius of a point of the skin.
-        let end = point_of(posed.corners(triangle), weights);
+        let end = point_of(posed.triangles[triangle], weights);
         let within = random_direction(rng).as_vec3() * (radius * 0.9 * rng.f32());
         let way = random_direction(rng).as_vec3() * (unit * rng.f32());
         let center = end + within - way;
@@ -64,17 +73,10 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -
         let cast = Cast {
             shape: Shape::ball(center, radius),
             displacements: [way; 2],
-            moving: sweeps,
+            moving: round % 2 == 0,
             tolerance: Some(tolerance.into()),
         };
-        let mover = Mover {
-            start: [center.as_dvec3(); 2],
-            ways: [way.as_dvec3(); 2],
-            radius: f64::from(radius),
-            tolerance: f64::from(tolerance),
-            sweeps,
-        };
-        checked += compare(posed, cast, &mover, triangle, weights);
+        checked += compare(posed, cast, triangle, weights);
 
         let other = end + random_direction(rng).as_vec3() * (unit * 0.3 * rng.f32());
         let back = random_direction(rng).as_vec3() * (unit * rng.f32());
@@ -84,24 +86,14 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -
             displacements: [way, back],
             ..cast
         };
-        let mover = Mover {
-            start: ends.map(|end| end.as_dvec3()),
-            ways: [way.as_dvec3(), back.as_dvec3()],
-            ..mover
-        };
-        checked += compare(posed, cast, &mover, triangle, weights);
+        checked += compare(posed, cast, triangle, weights);
     }
     checked
 }
 
 /// Asks a question and checks its answer against the known motion; returns 1 if a contact was certain, else 0.
-fn compare(
-    posed: &Posed<'_>,
-    cast: Cast,
-    mover: &Mover,
-    triangle: usize,
-    weights: [f32; 3],
-) -> usize {
+fn compare(posed: &Posed<'_>, cast: Cast, triangle: usize, weights: [f32; 3]) -> usize {
+    let mover = &Mover::of(&cast);
     let among = Among::All;
     let question = &Question::CastCapsule { cast, among };
     let mut found = Vec::new();

@@ -25,7 +25,7 @@ fn winding(posed: &Posed<'_>, point: DVec3) -> Option<i64> {
     let clear = MOVED * (f64::from(posed.farthest) + point.length());
     let mut sum = 0.0;
     for triangle in 0..posed.surface.mesh().triangles().len() {
-        let corners = posed.corners(triangle).map(|p| p.as_dvec3() - point);
+        let corners = posed.triangles[triangle].map(|p| p.as_dvec3() - point);
         if distance(DVec3::ZERO, &corners) < clear {
             return None;
         }
@@ -81,7 +81,7 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, origins: usize) 
 /// A point close to the skin, on either side.
 fn origin(posed: &Posed<'_>, rng: &mut fastrand::Rng) -> Vec3 {
     let triangle = posed.any_triangle(rng);
-    let [a, b, c] = posed.corners(triangle).map(|p| p.as_dvec3());
+    let [a, b, c] = posed.triangles[triangle].map(|p| p.as_dvec3());
     let normal = (b - a).cross(c - a).normalize_or(DVec3::X);
     let side = if rng.bool() { 1.0 } else { -1.0 };
     let off = libm::exp10(-3.0 + 2.5 * rng.f64()) * f64::from(posed.extent);

@@ -16,9 +16,9 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, count: usize) ->
             panic!("no closest point to {point}");
         };
         let p = point.as_dvec3();
-        let triangles = 0..posed.surface.mesh().triangles().len();
-        let distances = triangles
-            .map(|triangle| distance(p, &posed.corners(triangle).map(|corner| corner.as_dvec3())));
+        let triangles = posed.triangles.iter();
+        let distances =
+            triangles.map(|corners| distance(p, &corners.map(|corner| corner.as_dvec3())));
         let nearest = distances.fold(f64::INFINITY, f64::min);
         // A measure of the lengths involved, to which the rounding error is proportional.
         let size = f64::from(posed.farthest) + p.length();

@@ -30,8 +30,11 @@ impl<'a> Posed<'a> {
         let previous: Vec<Vec3> = all.filter_map(before).collect();
         assert_eq!(previous.len(), positions.len());
         let both = positions.iter().chain(&previous);
+        assert!(
+            both.clone().all(|p| p.is_finite()),
+            "a vertex is not finite"
+        );
         let farthest = both.map(|p| p.abs().max_element()).fold(0.0, f32::max);
-        assert!(both_finite(&positions, &previous), "a vertex is not finite");
         let triangles = surface.mesh().triangles().iter();
         Self {
             surface,
@@ -43,11 +46,6 @@ impl<'a> Posed<'a> {
             extent: extent as f32,
             farthest,
         }
-    }
-
-    /// The current corners of a triangle.
-    pub(super) fn corners(&self, triangle: usize) -> [Vec3; 3] {
-        self.triangles[triangle]
     }
 
     pub(super) fn corner_ids(&self, triangle: usize) -> [usize; 3] {
@@ -73,11 +71,7 @@ impl<'a> Posed<'a> {
 
     /// Description of a triangle for messages.
     pub(super) fn name(&self, triangle: usize) -> String {
-        let corners = self.corners(triangle);
+        let corners = self.triangles[triangle];
         format!("triangle {} at {corners:?}", TriangleId(triangle as u32))
     }
-}
-
-fn both_finite(a: &[Vec3], b: &[Vec3]) -> bool {
-    a.iter().chain(b).all(|p| p.is_finite())
 }

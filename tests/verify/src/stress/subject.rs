@@ -8,7 +8,7 @@ use clamber_surface::rig::JointId;
 use glam::{DVec3, Vec3};
 
 use super::MeshFamily;
-use super::shapes::{Shape, ball, tube, tube_of_pairs};
+use super::shapes::{ball, tube, tube_of_pairs};
 use super::soups::{copied, slivers, spiked, with_t_junctions};
 
 /// A mesh and its joints.
@@ -57,16 +57,6 @@ impl Subject {
                 (shape, Joints::Star)
             }
         };
-        Self::build(family, shape, joints, extent, &mut rng)
-    }
-
-    fn build(
-        family: MeshFamily,
-        shape: Shape,
-        joints: Joints,
-        extent: f64,
-        rng: &mut fastrand::Rng,
-    ) -> Self {
         let origins: Vec<DVec3> = match joints {
             Joints::Star => STAR.map(|axis| axis * 0.25).to_vec(),
             Joints::Chain(count) | Joints::Middle(count) => (0..count)

@@ -19,17 +19,6 @@ pub struct Class {
     pub work: usize,
 }
 
-impl Class {
-    /// The class with the given work, rounded up.
-    pub(super) fn with_work(self, done: usize) -> Self {
-        let mut work = 0;
-        while work < done {
-            work = work * 4 + 3;
-        }
-        Self { work, ..self }
-    }
-}
-
 /// Smallest median of a class, nanoseconds; a shorter one is replaced by it. A query that the root's box rules out
 /// takes a twentieth of this time, which is no measure for queries that get a little farther.
 pub const FLOOR: f64 = 1_000.0;

@@ -109,7 +109,7 @@ pub(super) fn check(
 
 /// Checks that a contact is at its material point.
 fn check_contact(posed: &Posed<'_>, contact: &Contact, exact: f64) {
-    let corners = posed.corners(contact.material.key as usize);
+    let corners = posed.triangles[contact.material.key as usize];
     // Computed in model space: the f32 weights do not add up to exactly 1, which matters far from the origin.
     let weights = contact.material.coordinates.map(|weight| weight as f32);
     let place = posed.surface.world_from_model();
@@ -135,7 +135,7 @@ fn check_motion(posed: &Posed<'_>, palette: &Palette, before: &Before, rng: &mut
         panic!("{material:?} has no motion");
     };
     let place = *posed.surface.world_from_model();
-    let now = place.transform_point_f32(point_of(posed.corners(triangle), weights));
+    let now = place.transform_point_f32(point_of(posed.triangles[triangle], weights));
     let corners = posed.corner_ids(triangle).map(|v| before.positions[v]);
     let then = before.place.transform_point_f32(point_of(corners, weights));
     let moved = now - then;

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::agreement::{Among, Answers, Cast, Comparison, Found, Question, Shape};
+use crate::agreement::{Among, Answers, Cast, Comparison, Found, Line, Question, Shape};
 use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{Capsule, Ray};
 use clamber_surface::measure::BruteForce;
@@ -198,7 +198,8 @@ fn questions(bytes: &mut Bytes<'_>, positions: &[Vec3], size: f32, all: &mut Vec
             ends: [origin, end],
             radius,
         };
-        check_capsule(shape);
+        let capsule = Capsule::new(origin, end, radius);
+        assert_eq!(capsule.is_some(), is_capsule(shape), "{shape:?}");
         all.push(Question::OverlapCapsule { shape });
         all.push(Question::ClosestToCapsule {
             shape,
@@ -240,23 +241,10 @@ fn tolerance(bytes: &mut Bytes<'_>, radius: f32) -> f32 {
     }
 }
 
-/// Checks that [`Capsule::new`] succeeds if and only if its arguments are valid.
-fn check_capsule(
-    Shape {
-        ends: [a, b],
-        radius,
-    }: Shape,
-) {
-    let usable = a.is_finite() && b.is_finite() && radius >= 0.0 && radius.is_finite();
-    let capsule = Capsule::new(a, b, radius);
-    assert_eq!(capsule.is_some(), usable, "{a}, {b}, {radius}");
-}
-
 /// Checks that [`Ray::new`] succeeds if and only if its arguments are valid.
 fn check_ray(origin: Vec3, aim: Vec3) {
     let ray = Ray::new(origin, aim);
-    let usable = origin.is_finite() && aim.is_finite() && aim != Vec3::ZERO;
-    assert_eq!(ray.is_some(), usable, "{origin}, {aim}");
+    assert_eq!(ray.is_some(), is_ray(origin, aim), "{origin}, {aim}");
     if let Some(ray) = ray {
         let length = ray.direction().as_dvec3().length();
         assert!((length - 1.0).abs() < 1e-6, "{ray:?}");
@@ -327,36 +315,27 @@ fn is_undecided(brute_force: &BruteForce<'_>, asked: &Comparison, question: &Que
     any(&all) && (any(asked.wanted()) || any(asked.found()))
 }
 
+/// True if a ray's arguments are valid.
+fn is_ray(origin: Vec3, direction: Vec3) -> bool {
+    origin.is_finite() && direction.is_finite() && direction != Vec3::ZERO
+}
+
+/// True if a capsule's arguments are valid.
+fn is_capsule(shape: Shape) -> bool {
+    let finite = shape.ends.iter().all(|end| end.is_finite());
+    finite && shape.radius >= 0.0 && shape.radius.is_finite()
+}
+
 /// True if a question's arguments are valid.
 fn is_sound(question: &Question) -> bool {
-    let line = |origin: Vec3, direction: Vec3| {
-        origin.is_finite() && direction.is_finite() && direction != Vec3::ZERO
-    };
-    let capsule = |shape: Shape| {
-        let finite = shape.ends.iter().all(|end| end.is_finite());
-        finite && shape.radius >= 0.0 && shape.radius.is_finite()
-    };
+    let line = |line: Line| is_ray(line.origin, line.direction) && line.max_distance >= 0.0;
     let cast = |cast: Cast| {
         let tolerance = cast.tolerance.unwrap_or_default();
         let finite = cast.displacements.iter().all(|way| way.is_finite());
-        capsule(cast.shape) && finite && tolerance >= 0.0 && tolerance.is_finite()
+        is_capsule(cast.shape) && finite && tolerance >= 0.0 && tolerance.is_finite()
     };
     match *question {
-        Question::CastRay {
-            origin,
-            direction,
-            max_distance,
-        }
-        | Question::IntersectsRay {
-            origin,
-            direction,
-            max_distance,
-        }
-        | Question::CastRayAll {
-            origin,
-            direction,
-            max_distance,
-        } => line(origin, direction) && max_distance >= 0.0,
+        Question::CastRay(of) | Question::IntersectsRay(of) | Question::CastRayAll(of) => line(of),
         Question::ClosestPoint {
             point,
             max_distance,
@@ -364,8 +343,8 @@ fn is_sound(question: &Question) -> bool {
         Question::ClosestToCapsule {
             shape,
             max_distance,
-        } => capsule(shape) && max_distance >= 0.0,
-        Question::OverlapCapsule { shape } => capsule(shape),
+        } => is_capsule(shape) && max_distance >= 0.0,
+        Question::OverlapCapsule { shape } => is_capsule(shape),
         Question::CastCapsule { cast: of, .. } | Question::CastCapsuleAll { cast: of } => cast(of),
         Question::VisitBox { low, high } => {
             low.is_finite() && high.is_finite() && low.cmple(high).all()

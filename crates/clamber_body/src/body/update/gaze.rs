@@ -13,7 +13,7 @@ use crate::body::root::Root;
 const GAZE_HALF_TIME: f64 = 0.15;
 
 /// Where the head looks.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Gaze {
     memory: LookMemory,
     /// Share of the turn, from 0 to 1.
@@ -22,30 +22,13 @@ pub(crate) struct Gaze {
     at: DVec3,
 }
 
-impl Default for Gaze {
-    fn default() -> Self {
-        Self {
-            memory: LookMemory::default(),
-            weight: Spring::at(0.0),
-            at: DVec3::ZERO,
-        }
-    }
-}
-
 impl Update<'_> {
     /// Turns the head and the neck to the point that the climber looks at.
     pub(super) fn look(&self, pose: &mut Pose, root: &Root) -> Result<Gaze, BodyError> {
-        let goal = if self.frame.look_at.is_some() {
-            1.0
-        } else {
-            0.0
-        };
+        let goal = f64::from(self.frame.look_at.is_some());
         let mut gaze = self.memory.map_or_else(Gaze::default, |memory| memory.gaze);
-        if let Some(target) = self.frame.look_at {
-            gaze.at = target;
-        } else {
-            gaze.at = self.carry.point(gaze.at);
-        }
+        let look_at = self.frame.look_at;
+        gaze.at = look_at.unwrap_or_else(|| self.carry.point(gaze.at));
         if self.memory.is_none() {
             gaze.weight = Spring::at(goal);
         } else {

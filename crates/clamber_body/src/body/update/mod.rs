@@ -134,7 +134,8 @@ impl<'a> Update<'a> {
         let motion = self.motion();
         let turning = self.turned(motion);
         let walk = self.walk(turning.rotation(), motion);
-        let stances = [self.stance_before(), self.stance];
+        let before = self.memory.map_or(self.stance, |memory| memory.stance);
+        let stances = [before, self.stance];
         player.step(self.figure, state, stances, &walk, pose, self.dt)?;
         let context = self.context(pose, motion);
         let placed = self.place(turning.rotation(), motion);
@@ -191,11 +192,6 @@ impl<'a> Update<'a> {
         self.memory
             .as_ref()
             .filter(|memory| memory.stance == self.stance)
-    }
-
-    /// The stance in the last frame.
-    fn stance_before(&self) -> Stance {
-        self.memory.map_or(self.stance, |memory| memory.stance)
     }
 
     /// Seconds since the hands took hold.

@@ -77,25 +77,19 @@ fn bad_input_is_refused_and_changes_nothing() {
         assert!(climber.step(&IDLE, &obstacles, dt).is_err(), "{dt}");
     }
     let nan = DVec3::new(f64::NAN, 0.0, 0.0);
-    let blow = |velocity, damage| {
-        let by = None;
-        Some(Blow {
+    let struck = |velocity, damage| ClimberInput {
+        blow: Some(Blow {
             velocity,
             damage,
-            by,
-        })
+            by: None,
+        }),
+        ..IDLE
     };
     for input in [
         walking(nan),
         ClimberInput { climb: nan, ..IDLE },
-        ClimberInput {
-            blow: blow(nan, 0.1),
-            ..IDLE
-        },
-        ClimberInput {
-            blow: blow(DVec3::X, f64::INFINITY),
-            ..IDLE
-        },
+        struck(nan, 0.1),
+        struck(DVec3::X, f64::INFINITY),
     ] {
         let refused = climber.step(&input, &obstacles, DT);
         assert_eq!(refused, Err(ClimberError::NotFinite("input")), "{input:?}");
@@ -113,28 +107,17 @@ fn inconsistent_or_not_finite_states_are_refused() {
         state.support.iter_mut().for_each(change);
         state
     };
-    let (nan, none) = (f64::NAN, DVec3::NAN);
+    let with = |change: fn(&mut ClimberState)| {
+        let mut state = before;
+        change(&mut state);
+        state
+    };
     for state in [
-        ClimberState {
-            velocity: none,
-            ..before
-        },
-        ClimberState {
-            shake: none,
-            ..before
-        },
-        ClimberState {
-            support_velocity: Some(none),
-            ..before
-        },
-        ClimberState {
-            stamina: nan,
-            ..before
-        },
-        ClimberState {
-            coyote: nan,
-            ..before
-        },
+        with(|state| state.velocity = DVec3::NAN),
+        with(|state| state.shake = DVec3::NAN),
+        with(|state| state.support_velocity = Some(DVec3::NAN)),
+        with(|state| state.stamina = f64::NAN),
+        with(|state| state.coyote = f64::NAN),
         with_support(|support| support.attachment.offset.x = f64::NAN),
         with_support(|support| support.normal.y = f64::INFINITY),
         with_support(|support| support.face.y = f64::INFINITY),
@@ -215,11 +198,8 @@ fn an_obstacle_that_returns_nan_does_not_spread_it() {
         climber.step(&IDLE, &obstacles, DT).unwrap();
         assert!(climber.state().is_finite(), "{:?}", climber.state());
     }
-    assert!(
-        (climber.state().position.y - 0.4).abs() < 1e-6,
-        "{:?}",
-        climber.state()
-    );
+    let state = climber.state();
+    assert!((state.position.y - 0.4).abs() < 1e-6, "{state:?}");
 }
 
 #[test]
@@ -261,12 +241,9 @@ fn modes_that_the_configuration_lacks_end_in_standing() {
             for _ in 0..60 {
                 step_on(&mut climber, &ground, &input);
             }
-            assert_eq!(
-                climber.state().mode,
-                ClimberMode::Standing,
-                "{mode:?}, grip {grip}: {:?}",
-                climber.state()
-            );
+            let state = climber.state();
+            let told = format!("{mode:?}, grip {grip}: {state:?}");
+            assert_eq!(state.mode, ClimberMode::Standing, "{told}");
         }
     }
 }

@@ -57,12 +57,6 @@ fn pushes_move_the_ball_but_keep_its_material_point() {
         folded.overlap_sphere(state.position, 0.5, &mut contacts);
         let distances = contacts.iter().map(|contact| contact.distance);
         let nearest = distances.fold(f64::INFINITY, f64::min);
-        println!(
-            "{tick} {nearest} {}",
-            state
-                .position
-                .distance(state.support.unwrap().attachment.point)
-        );
         assert!((nearest - 0.4).abs() < 2e-5, "tick {tick}: {nearest}");
     }
     assert!(pushed > 1e-3 && pushed < 0.01, "{pushed}");

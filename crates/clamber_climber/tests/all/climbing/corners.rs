@@ -1,16 +1,11 @@
 use clamber_climber::{ClimberEvent, ClimberInput, ClimberMode};
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 
+use crate::events::{count, is_turned_corner};
+use crate::input::{HOLD, IDLE, grip_climb, grip_walk};
 use crate::scene::{
-    DT, FUR, HOLD, STONE, assert_mode, climber, cuboid, cuboid_with, placed, run, step,
+    DT, FUR, STONE, assert_mode, climber, cuboid, cuboid_at, cuboid_with, run, step,
 };
-
-fn climb(direction: DVec3) -> ClimberInput {
-    ClimberInput {
-        climb: direction,
-        ..HOLD
-    }
-}
 
 #[test]
 fn grips_a_wall_of_fur_in_flight_and_stays_on_it() {
@@ -52,7 +47,7 @@ fn climbs_in_any_direction_at_its_speed() {
         let mut climber = climber(DVec3::new(0.3, 2.0, 1.4));
         run(&mut climber, &[&wall], &HOLD, 10);
         let from = climber.state().position;
-        run(&mut climber, &[&wall], &climb(direction), 60);
+        run(&mut climber, &[&wall], &grip_climb(direction), 60);
         let made = climber.state().position - from;
         assert!(
             (made - direction * 1.5).length() < 1e-3,
@@ -86,13 +81,9 @@ fn climbs_around_convex_corners_all_around_a_block() {
         let p = climber.state().position;
         let normal = climber.state().support.unwrap().normal_in_world();
         let aside = DVec3::Y.cross(normal);
-        let report = step(&mut climber, &[&block], &climb(aside));
+        let report = step(&mut climber, &[&block], &grip_climb(aside));
         assert_mode(&climber, ClimberMode::Holding);
-        corners += report
-            .events
-            .iter()
-            .filter(|event| matches!(event, ClimberEvent::TurnedCorner { .. }))
-            .count();
+        corners += count(&report.events, is_turned_corner);
         let q = climber.state().position;
         turned += libm::atan2(p.z * q.x - p.x * q.z, p.x * q.x + p.z * q.z);
         angle = angle.max((q - p).length());
@@ -112,36 +103,28 @@ fn climbs_around_convex_corners_all_around_a_block() {
 #[test]
 fn climbs_from_the_floor_up_a_concave_corner_and_over_the_top() {
     let floor = cuboid(Vec3::new(10.0, 1.0, 10.0), FUR);
-    let mut wall = cuboid(Vec3::new(5.0, 3.0, 1.0), FUR);
-    placed(&mut wall, DVec3::new(0.0, 3.0, -3.0), DQuat::IDENTITY);
+    let wall = cuboid_at(Vec3::new(5.0, 3.0, 1.0), FUR, DVec3::new(0.0, 3.0, -3.0));
     let surfaces = [&floor, &wall];
     let mut climber = climber(DVec3::new(0.0, 1.4, 0.0));
     run(&mut climber, &surfaces, &HOLD, 5);
     assert_mode(&climber, ClimberMode::Holding);
-    let forward = ClimberInput {
-        walk: -DVec3::Z,
-        ..HOLD
-    };
+    let forward = grip_walk(-DVec3::Z);
     let events = run(&mut climber, &surfaces, &forward, 330);
     let state = climber.state();
     // On level fur, the climber faces as it did on the wall.
     assert!(state.heading.dot(-DVec3::Z) > 0.999, "{state:?}");
     assert!(state.position.y > 6.0, "{state:?} {events:?}");
-    let corners = events
-        .iter()
-        .filter(|event| matches!(event, ClimberEvent::TurnedCorner { .. }));
-    assert_eq!(corners.count(), 2, "{events:?}");
+    assert_eq!(count(&events, is_turned_corner), 2, "{events:?}");
 }
 
 #[test]
 fn climbs_from_one_part_onto_another_and_from_one_creature_onto_another() {
     let lower = cuboid(Vec3::new(3.0, 2.0, 1.0), FUR);
-    let mut upper = cuboid(Vec3::new(3.0, 2.0, 1.0), FUR);
-    placed(&mut upper, DVec3::new(0.0, 4.2, 0.1), DQuat::IDENTITY);
+    let upper = cuboid_at(Vec3::new(3.0, 2.0, 1.0), FUR, DVec3::new(0.0, 4.2, 0.1));
     let mut climber = climber(DVec3::new(0.0, 0.0, 1.4));
     let surfaces = [&lower, &upper];
     run(&mut climber, &surfaces, &HOLD, 5);
-    run(&mut climber, &surfaces, &climb(DVec3::Y), 160);
+    run(&mut climber, &surfaces, &grip_climb(DVec3::Y), 160);
     let support = climber.state().support.unwrap();
     assert_eq!(support.attachment.obstacle.0, 1, "{:?}", climber.state());
     assert_mode(&climber, ClimberMode::Holding);
@@ -152,7 +135,7 @@ fn climbing_stops_where_fur_ends_at_stone() {
     let tag = |p: Vec3| if p.y > 2.0 { STONE } else { FUR };
     let wall = cuboid_with(Vec3::new(5.0, 10.0, 1.0), tag);
     let mut climber = climber(DVec3::new(0.3, 0.0, 1.4));
-    run(&mut climber, &[&wall], &climb(DVec3::Y), 240);
+    run(&mut climber, &[&wall], &grip_climb(DVec3::Y), 240);
     assert_mode(&climber, ClimberMode::Holding);
     let height = climber.state().position.y;
     assert!((2.0..2.5).contains(&height), "{height}");
@@ -163,17 +146,10 @@ fn climbs_from_fur_onto_stone_that_can_be_stood_on() {
     let tag = |p: Vec3| if p.y > 2.99 { STONE } else { FUR };
     let block = cuboid_with(Vec3::new(5.0, 3.0, 5.0), tag);
     let mut climber = climber(DVec3::new(0.3, 1.0, 5.4));
-    let forward = ClimberInput {
-        walk: -DVec3::Z,
-        ..HOLD
-    };
+    let forward = grip_walk(-DVec3::Z);
     let events = run(&mut climber, &[&block], &forward, 240);
-    assert!(
-        climber.state().position.y > 3.3,
-        "{:?} {events:?}",
-        climber.state()
-    );
-    let release = ClimberInput::default();
-    run(&mut climber, &[&block], &release, 30);
+    let state = climber.state();
+    assert!(state.position.y > 3.3, "{state:?} {events:?}");
+    run(&mut climber, &[&block], &IDLE, 30);
     assert_mode(&climber, ClimberMode::Standing);
 }

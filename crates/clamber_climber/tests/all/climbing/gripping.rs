@@ -1,35 +1,33 @@
 //! The tick in which a climber takes hold of a moving obstacle.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberMode};
-use clamber_world::{Obstacle, ObstacleId};
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 
-use crate::scene::{DT, FUR, HOLD, STONE, assert_mode, climber, cuboid, moved, placed};
+use crate::cases::pairs;
+use crate::input::{HOLD, IDLE};
+use crate::scene::{DT, FUR, STONE, assert_mode, climber, cuboid, moved, placed, tick_among};
 
 /// In flight, the climber grips a wall that moves as fast as a striking limb.
 #[test]
 fn gripping_an_approaching_wall_keeps_the_climber_in_front_of_it() {
-    for tag in [FUR, STONE] {
-        for start in 0..20 {
-            let mut wall = cuboid(Vec3::new(4.0, 3.0, 0.3), tag);
-            let z = -1.0 - 0.07 * f64::from(start);
-            let speed = 60.0;
-            let at = |tick: u32| DVec3::new(0.0, 0.0, z + speed * DT * f64::from(tick));
-            placed(&mut wall, at(0), DQuat::IDENTITY);
-            let mut climber = climber(DVec3::new(0.3, 2.3, 0.5));
-            for tick in 1..=6 {
-                moved(&mut wall, at(tick), DQuat::IDENTITY);
-                let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &wall)];
-                climber.step(&HOLD, &obstacles, DT).unwrap();
-                let front = at(tick).z + 0.3;
-                let gap = climber.state().position.z - front;
-                let over = climber.state().position.y > 3.3;
-                assert!(
-                    gap > 0.38 || over,
-                    "{tag:?} {start} {tick}: {gap} {:?}",
-                    climber.state()
-                );
-            }
+    for (tag, start) in pairs([FUR, STONE], 0..20) {
+        let mut wall = cuboid(Vec3::new(4.0, 3.0, 0.3), tag);
+        let z = -1.0 - 0.07 * f64::from(start);
+        let speed = 60.0;
+        let at = |tick: u32| DVec3::new(0.0, 0.0, z + speed * DT * f64::from(tick));
+        placed(&mut wall, at(0));
+        let mut climber = climber(DVec3::new(0.3, 2.3, 0.5));
+        for tick in 1..=6 {
+            moved(&mut wall, at(tick));
+            tick_among(&mut climber, &[&wall], &HOLD);
+            let front = at(tick).z + 0.3;
+            let gap = climber.state().position.z - front;
+            let over = climber.state().position.y > 3.3;
+            assert!(
+                gap > 0.38 || over,
+                "{tag:?} {start} {tick}: {gap} {:?}",
+                climber.state()
+            );
         }
     }
 }
@@ -40,30 +38,19 @@ fn a_climber_dragged_against_a_wall_is_torn_off_not_dragged_through() {
     let wall = cuboid(Vec3::new(0.5, 6.0, 6.0), STONE);
     let mut beam = cuboid(Vec3::new(1.0, 0.3, 1.0), FUR);
     let mut config = ClimberConfig::colossus_climber();
-    if let Some(grip) = &mut config.grip {
-        grip.max_overhang = 2.0;
-    }
+    config.grip.as_mut().unwrap().max_overhang = 2.0;
     let at = |tick: u32| DVec3::new(4.0 - 0.2 * f64::from(tick), 7.0, 0.0);
-    placed(&mut beam, at(0), DQuat::IDENTITY);
+    placed(&mut beam, at(0));
     let mut climber = Climber::new(config, DVec3::new(4.0, 6.2, 0.0)).unwrap();
-    let tick_among = |climber: &mut Climber, beam: &dyn Obstacle| {
-        let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
-            [(ObstacleId(0), &wall), (ObstacleId(1), beam)];
-        climber.step(&HOLD, &obstacles, DT).unwrap();
-    };
     for _ in 0..60 {
-        moved(&mut beam, at(0), DQuat::IDENTITY);
-        tick_among(&mut climber, &beam);
+        moved(&mut beam, at(0));
+        tick_among(&mut climber, &[&wall, &beam], &HOLD);
     }
     assert_mode(&climber, ClimberMode::Hanging);
     for tick in 1..=40 {
         // The beam goes over the wall's top and down on its other side.
-        moved(
-            &mut beam,
-            at(tick) - DVec3::Y * 0.04 * f64::from(tick),
-            DQuat::IDENTITY,
-        );
-        tick_among(&mut climber, &beam);
+        moved(&mut beam, at(tick) - DVec3::Y * 0.04 * f64::from(tick));
+        tick_among(&mut climber, &[&wall, &beam], &HOLD);
         let p = climber.state().position;
         let inside = (DVec3::new(0.5, 6.0, 6.0) - p.abs()).min_element();
         assert!(inside < -0.35, "{tick}: {inside} {:?}", climber.state());
@@ -79,22 +66,18 @@ fn gripping_the_ground_underfoot_keeps_the_climber_on_its_point() {
         // The ground starts with a jerk.
         config.ground.throw_acceleration = f64::INFINITY;
         config.tumble = None;
-        if let Some(grip) = &mut config.grip {
-            grip.hang_acceleration = f64::INFINITY;
-        }
+        config.grip.as_mut().unwrap().hang_acceleration = f64::INFINITY;
         let mut climber = Climber::new(config, DVec3::new(0.0, 1.4, 0.0)).unwrap();
         let mut off = DVec3::ZERO;
         for tick in 0..40 {
             let at = velocity * (f64::from(tick) * DT);
             if tick < 10 {
-                placed(&mut ground, DVec3::ZERO, DQuat::IDENTITY);
+                placed(&mut ground, DVec3::ZERO);
             } else {
-                moved(&mut ground, at, DQuat::IDENTITY);
+                moved(&mut ground, at);
             }
-            let mut input = HOLD;
-            input.grip = tick >= 20;
-            let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
-            climber.step(&input, &obstacles, DT).unwrap();
+            let input = if tick < 20 { IDLE } else { HOLD };
+            tick_among(&mut climber, &[&ground], &input);
             if tick == 19 {
                 assert_mode(&climber, ClimberMode::Standing);
                 off = climber.state().position - at;

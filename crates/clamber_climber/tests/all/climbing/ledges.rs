@@ -1,31 +1,27 @@
-use clamber_climber::{ClimberEvent, ClimberInput, ClimberMode, ClimberState};
-use clamber_world::{Obstacle, ObstacleId};
+use clamber_climber::{Climber, ClimberEvent, ClimberInput, ClimberMode, ClimberState};
+use clamber_surface::surface::SkinnedSurface;
 use glam::{DQuat, DVec3, Vec3};
 
+use crate::cases::pairs;
+use crate::events::{is_caught, is_grabbed};
+use crate::input::{HOLD, IDLE, grip_climb, grip_walk};
 use crate::scene::{
-    DT, FUR, HOLD, STONE, assert_mode, climber, cuboid, cuboid_with, moved, placed, run, step,
+    DT, FUR, STONE, assert_mode, climber, cuboid, cuboid_at, cuboid_with, moved, moved_turned,
+    placed_turned, run, step, tick_among,
 };
 
 /// A climber that hangs from the upper front edge of a block of stone.
-fn hung(block: &clamber_surface::surface::SkinnedSurface) -> clamber_climber::Climber {
+fn hung(block: &SkinnedSurface) -> Climber {
     let mut climber = climber(DVec3::new(0.3, 2.75, 3.5));
-    let toward = ClimberInput {
-        walk: -DVec3::Z * 0.1,
-        ..HOLD
-    };
+    let toward = grip_walk(-DVec3::Z * 0.1);
     let events = run(&mut climber, &[block], &toward, 1);
-    let caught = |event: &ClimberEvent| matches!(event, ClimberEvent::LedgeCaught { .. });
-    assert!(
-        events.iter().any(caught),
-        "{events:?} {:?}",
-        climber.state()
-    );
+    assert!(caught(&events), "{events:?} {:?}", climber.state());
     run(&mut climber, &[block], &HOLD, 60);
     assert_mode(&climber, ClimberMode::LedgeHanging);
     climber
 }
 
-fn block() -> clamber_surface::surface::SkinnedSurface {
+fn block() -> SkinnedSurface {
     cuboid(Vec3::new(4.0, 3.0, 3.0), STONE)
 }
 
@@ -41,28 +37,19 @@ fn catches_a_ledge_in_flight_and_hangs_below_it() {
 fn pulls_itself_up_and_stands_on_top() {
     let block = block();
     let mut climber = hung(&block);
-    let up = ClimberInput {
-        walk: -DVec3::Z,
-        ..HOLD
-    };
+    let up = grip_walk(-DVec3::Z);
     let events = run(&mut climber, &[&block], &up, 60);
     assert!(events.contains(&ClimberEvent::Mantled), "{events:?}");
     assert_mode(&climber, ClimberMode::Standing);
-    assert!(
-        (climber.state().position.y - 3.4).abs() < 1e-3,
-        "{:?}",
-        climber.state()
-    );
+    let state = climber.state();
+    assert!((state.position.y - 3.4).abs() < 1e-3, "{state:?}");
 }
 
 #[test]
 fn goes_along_a_ledge_and_around_its_end() {
     let block = block();
     let mut climber = hung(&block);
-    let aside = ClimberInput {
-        walk: DVec3::X,
-        ..HOLD
-    };
+    let aside = grip_walk(DVec3::X);
     run(&mut climber, &[&block], &aside, 60);
     let x = climber.state().position.x;
     assert!((x - 1.3).abs() < 0.02, "{x}");
@@ -77,7 +64,7 @@ fn goes_along_a_ledge_and_around_its_end() {
 fn drops_or_jumps_off_a_ledge() {
     let block = block();
     let mut climber = hung(&block);
-    let events = run(&mut climber, &[&block], &ClimberInput::default(), 1);
+    let events = run(&mut climber, &[&block], &IDLE, 1);
     assert!(events.contains(&ClimberEvent::Released), "{events:?}");
     let mut climber = hung(&block);
     let jump = ClimberInput { jump: true, ..HOLD };
@@ -97,19 +84,15 @@ fn a_ledge_that_tips_away_drops_and_one_that_tips_back_becomes_ground() {
             let angle = sign * 0.4 * f64::from(tick) * DT;
             let half = angle * 0.5;
             let turn = DQuat::from_xyzw(libm::sin(half), 0.0, 0.0, libm::cos(half));
-            moved(&mut block, DVec3::ZERO, turn);
+            moved_turned(&mut block, DVec3::ZERO, turn);
             step(&mut climber, &[&block], &HOLD);
             modes.push(climber.state().mode);
             if climber.state().mode != ClimberMode::LedgeHanging {
                 break;
             }
         }
-        assert_eq!(
-            modes.last(),
-            Some(&expected),
-            "{sign}: {:?}",
-            climber.state()
-        );
+        let state = climber.state();
+        assert_eq!(modes.last(), Some(&expected), "{sign}: {state:?}");
     }
 }
 
@@ -120,7 +103,7 @@ fn rides_a_ledge_that_moves() {
     let offset = climber.state().position;
     for tick in 1..=120 {
         let at = DVec3::new(0.0, 0.02, 0.05) * f64::from(tick);
-        moved(&mut block, at, DQuat::IDENTITY);
+        moved(&mut block, at);
         step(&mut climber, &[&block], &HOLD);
         let off = climber.state().position - at - offset;
         assert!(off.length() < 1e-3, "{tick}: {off}");
@@ -128,22 +111,17 @@ fn rides_a_ledge_that_moves() {
 }
 
 fn caught(events: &[ClimberEvent]) -> bool {
-    let is_catch = |event: &ClimberEvent| matches!(event, ClimberEvent::LedgeCaught { .. });
-    events.iter().any(is_catch)
+    events.iter().any(is_caught)
 }
 
 #[test]
 fn a_standing_or_sliding_climber_catches_the_ledge_in_front() {
     let block = block();
-    let mut step_below = cuboid(Vec3::new(4.0, 2.0, 2.0), STONE);
-    placed(&mut step_below, DVec3::new(0.0, 0.0, 5.0), DQuat::IDENTITY);
+    let step_below = cuboid_at(Vec3::new(4.0, 2.0, 2.0), STONE, DVec3::new(0.0, 0.0, 5.0));
     let surfaces = [&block, &step_below];
-    let toward = ClimberInput {
-        walk: -DVec3::Z,
-        ..HOLD
-    };
+    let toward = grip_walk(-DVec3::Z);
     let mut climber = climber(DVec3::new(0.3, 2.4, 3.45));
-    run(&mut climber, &surfaces, &ClimberInput::default(), 5);
+    run(&mut climber, &surfaces, &IDLE, 5);
     assert_mode(&climber, ClimberMode::Standing);
     let mut sliding = climber.clone();
     let events = run(&mut climber, &surfaces, &toward, 1);
@@ -163,22 +141,15 @@ fn climbs_up_to_a_ledge_over_it_and_down_again() {
     let fur_below = |p: Vec3| if p.y > 2.1 { STONE } else { FUR };
     let block = cuboid_with(Vec3::new(4.0, 3.0, 3.0), fur_below);
     let mut climber = climber(DVec3::new(0.3, 0.0, 3.4));
-    let toward = |sign: f64| ClimberInput {
-        walk: -DVec3::Z * sign,
-        ..HOLD
-    };
+    let toward = |sign: f64| grip_walk(-DVec3::Z * sign);
     let events = run(&mut climber, &[&block], &toward(1.0), 240);
     assert!(caught(&events), "{events:?} {:?}", climber.state());
     assert!(events.contains(&ClimberEvent::Mantled), "{events:?}");
     // From hanging again, down to the fur.
     let mut climber = hung(&block);
     let events = run(&mut climber, &[&block], &toward(-1.0), 60);
-    let gripped = |event: &ClimberEvent| matches!(event, ClimberEvent::Grabbed { .. });
-    assert!(
-        events.iter().any(gripped),
-        "{events:?} {:?}",
-        climber.state()
-    );
+    let gripped = events.iter().any(is_grabbed);
+    assert!(gripped, "{events:?} {:?}", climber.state());
     assert_mode(&climber, ClimberMode::Holding);
     assert!(climber.state().position.y < 2.0, "{:?}", climber.state());
 }
@@ -187,16 +158,13 @@ fn climbs_up_to_a_ledge_over_it_and_down_again() {
 fn a_standing_climber_ignores_ledges_that_would_not_lift_its_feet() {
     let ground = cuboid(Vec3::new(6.0, 1.0, 6.0), STONE);
     for (height, lifts) in [(0.9, false), (1.2, true)] {
-        let mut block = cuboid(Vec3::new(4.0, 1.0, 1.0), STONE);
-        placed(&mut block, DVec3::new(0.0, height, -1.5), DQuat::IDENTITY);
+        let place = DVec3::new(0.0, height, -1.5);
+        let block = cuboid_at(Vec3::new(4.0, 1.0, 1.0), STONE, place);
         let surfaces = [&ground, &block];
         let mut climber = climber(DVec3::new(0.3, 1.4, 0.0));
-        run(&mut climber, &surfaces, &ClimberInput::default(), 5);
+        run(&mut climber, &surfaces, &IDLE, 5);
         assert_mode(&climber, ClimberMode::Standing);
-        let toward = ClimberInput {
-            walk: -DVec3::Z * 0.01,
-            ..HOLD
-        };
+        let toward = grip_walk(-DVec3::Z * 0.01);
         let events = run(&mut climber, &surfaces, &toward, 20);
         assert_eq!(caught(&events), lifts, "{height}: {events:?}");
     }
@@ -208,13 +176,10 @@ fn pulls_itself_up_out_from_under_an_overhang() {
     // The wall leans over by 35 degrees, so that its upper edge is in front.
     let half = 17.5f64.to_radians();
     let lean = DQuat::from_xyzw(libm::sin(half), 0.0, 0.0, libm::cos(half));
-    placed(&mut block, DVec3::ZERO, lean);
+    placed_turned(&mut block, DVec3::ZERO, lean);
     let edge = lean * DVec3::new(0.3, 3.0, 3.0);
     let mut climber = climber(edge + DVec3::new(0.0, -0.25, 0.5));
-    let up = ClimberInput {
-        walk: -DVec3::Z,
-        ..HOLD
-    };
+    let up = grip_walk(-DVec3::Z);
     let events = run(&mut climber, &[&block], &up, 60);
     assert!(caught(&events), "{events:?} {:?}", climber.state());
     assert!(events.contains(&ClimberEvent::Mantled), "{events:?}");
@@ -225,35 +190,26 @@ fn pulls_itself_up_out_from_under_an_overhang() {
 #[test]
 fn a_ledge_that_crushes_it_lets_go() {
     let ground = cuboid(Vec3::new(8.0, 1.0, 8.0), STONE);
-    let mut behind = cuboid(Vec3::new(8.0, 4.0, 0.5), STONE);
     let mut block = block();
     let half = 10f64.to_radians();
     let lean = DQuat::from_xyzw(libm::sin(half), 0.0, 0.0, libm::cos(half));
     let middle = DVec3::Y * 3.0;
-    placed(&mut block, middle, lean);
+    placed_turned(&mut block, middle, lean);
     let edge = middle + lean * DVec3::new(0.3, 3.0, 3.0);
-    placed(
-        &mut behind,
+    let behind = cuboid_at(
+        Vec3::new(8.0, 4.0, 0.5),
+        STONE,
         DVec3::new(0.0, 3.0, edge.z + 1.15),
-        DQuat::IDENTITY,
     );
     let mut climber = climber(edge + DVec3::new(0.0, -0.55, 0.24));
     run(&mut climber, &[&ground, &block, &behind], &HOLD, 30);
-    let pull = ClimberInput {
-        climb: DVec3::Y,
-        ..HOLD
-    };
+    let pull = grip_climb(DVec3::Y);
     assert_mode(&climber, ClimberMode::LedgeHanging);
     let mut crushed: f64 = 0.0;
     for tick in 1..=240 {
         let down = 3.4 * (1.0 - (f64::from(tick) / 120.0 - 1.0).abs());
-        moved(&mut block, middle - DVec3::Y * down, lean);
-        let obstacles: [(ObstacleId, &dyn Obstacle); 3] = [
-            (ObstacleId(0), &ground),
-            (ObstacleId(1), &block),
-            (ObstacleId(2), &behind),
-        ];
-        let report = climber.step(&pull, &obstacles, DT).unwrap();
+        moved_turned(&mut block, middle - DVec3::Y * down, lean);
+        let report = tick_among(&mut climber, &[&ground, &block, &behind], &pull);
         for event in report.events {
             if let ClimberEvent::Crushed { depth } = event {
                 crushed = crushed.max(depth);
@@ -261,12 +217,7 @@ fn a_ledge_that_crushes_it_lets_go() {
         }
     }
     assert!(crushed > 0.01 && crushed < 0.1, "{crushed}");
-    run(
-        &mut climber,
-        &[&ground, &block, &behind],
-        &ClimberInput::default(),
-        60,
-    );
+    run(&mut climber, &[&ground, &block, &behind], &IDLE, 60);
     assert_mode(&climber, ClimberMode::Standing);
     let height = climber.state().position.y;
     assert!((height - 1.4).abs() < 0.02, "{height}");
@@ -276,30 +227,22 @@ fn a_ledge_that_crushes_it_lets_go() {
 /// up.
 #[test]
 fn a_released_stick_is_read_anew_after_a_corner() {
-    for released in [1, 6, 60] {
-        for (stick, rises) in [(-DVec3::X, true), (DVec3::X, false)] {
-            let block = cuboid(Vec3::new(1.0, 1.0, 1.0), STONE);
-            let mut climber = climber(DVec3::new(0.5, 0.9, 1.42));
-            run(&mut climber, &[&block], &HOLD, 60);
-            assert_mode(&climber, ClimberMode::LedgeHanging);
-            let along = ClimberInput {
-                walk: DVec3::X,
-                ..HOLD
-            };
-            run(&mut climber, &[&block], &along, 180);
-            let heading = climber.state().heading;
-            assert!(heading.x < -0.99, "it is round the corner: {heading}");
-            run(&mut climber, &[&block], &HOLD, released);
-            let from = climber.state().position;
-            let input = ClimberInput {
-                walk: stick,
-                ..HOLD
-            };
-            run(&mut climber, &[&block], &input, 50);
-            let way = climber.state().position - from;
-            let told = format!("released for {released}, {stick}: {way}");
-            assert!((way.y > 0.5) == rises, "{told}");
-            assert!(rises || way.z.abs() < 0.05, "{told}");
-        }
+    for (released, (stick, rises)) in pairs([1, 6, 60], [(-DVec3::X, true), (DVec3::X, false)]) {
+        let block = cuboid(Vec3::new(1.0, 1.0, 1.0), STONE);
+        let mut climber = climber(DVec3::new(0.5, 0.9, 1.42));
+        run(&mut climber, &[&block], &HOLD, 60);
+        assert_mode(&climber, ClimberMode::LedgeHanging);
+        let along = grip_walk(DVec3::X);
+        run(&mut climber, &[&block], &along, 180);
+        let heading = climber.state().heading;
+        assert!(heading.x < -0.99, "it is round the corner: {heading}");
+        run(&mut climber, &[&block], &HOLD, released);
+        let from = climber.state().position;
+        let input = grip_walk(stick);
+        run(&mut climber, &[&block], &input, 50);
+        let way = climber.state().position - from;
+        let told = format!("released for {released}, {stick}: {way}");
+        assert!((way.y > 0.5) == rises, "{told}");
+        assert!(rises || way.z.abs() < 0.05, "{told}");
     }
 }

@@ -1,22 +1,19 @@
 //! Climbers that lie on a light body which another object moves.
 
-use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, ClimberMode};
-use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use clamber_climber::{Climber, ClimberConfig, ClimberMode};
+use clamber_world::HalfSpace;
 use glam::DVec3;
 
+use crate::cases::WORLDS;
 use crate::held::Held;
+use crate::input::{IDLE, struck};
 use crate::moving::MovingHalfSpace;
 use crate::numbers::in_world_of_size;
+use crate::scene::list;
 
 #[test]
 fn who_lies_on_a_plank_in_a_lift_that_speeds_up_goes_with_it() {
-    for (size, rate) in [
-        (1.0, 60.0),
-        (1.0, 30.0),
-        (1.0, 240.0),
-        (0.02, 60.0),
-        (100.0, 60.0),
-    ] {
+    for (size, rate) in WORLDS {
         for speeds_up in [0.0, 1.0, -1.0, 4.0] {
             let config = ClimberConfig {
                 tumble: ClimberConfig::colossus_climber().tumble,
@@ -35,16 +32,9 @@ fn who_lies_on_a_plank_in_a_lift_that_speeds_up_goes_with_it() {
                     shifts: [height(tick), height(tick + 1)],
                 };
                 let plank = Held(lift, 5.0);
-                let blow = Blow {
-                    velocity: DVec3::X * (5.0 * size),
-                    ..Blow::default()
-                };
-                let input = ClimberInput {
-                    blow: (tick == 5).then_some(blow),
-                    ..ClimberInput::IDLE
-                };
-                let around: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &plank)];
-                climber.step(&input, &around, dt).unwrap();
+                let blow = struck(DVec3::X * (5.0 * size), IDLE);
+                let input = if tick == 5 { blow } else { IDLE };
+                climber.step(&input, &list(&[&plank]), dt).unwrap();
                 let state = climber.state();
                 if state.mode == ClimberMode::Tumbling {
                     lay += dt;

@@ -1,24 +1,23 @@
 use std::f64::consts::TAU;
 
-use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
+use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberMode};
 use clamber_surface::surface::SkinnedSurface;
-use clamber_world::{Obstacle, ObstacleId};
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 
-use crate::scene::{FUR, HOLD, cuboid, moved, placed, run, step};
+use crate::input::{HOLD, IDLE};
+use crate::scene::{FUR, climber, cuboid, list, moved, placed, run, step};
 
 /// Seconds until a shake of 0.25 m at 3 Hz opens the grip.
 fn release_time(rate: f64) -> f64 {
     let mut wall = cuboid(Vec3::new(5.0, 10.0, 1.0), FUR);
-    let mut climber =
-        Climber::new(ClimberConfig::colossus_climber(), DVec3::new(0.0, 0.0, 1.4)).unwrap();
+    let mut climber = climber(DVec3::new(0.0, 0.0, 1.4));
     let mut time = 0.0;
     while time < 60.0 {
         time += 1.0 / rate;
         let y = 0.25 * libm::sin(time * 3.0 * TAU);
-        moved(&mut wall, DVec3::new(0.0, y, 0.0), DQuat::IDENTITY);
-        let obstacles = [(ObstacleId(0), &wall as &dyn Obstacle)];
-        let report = climber.step(&HOLD, &obstacles, 1.0 / rate).unwrap();
+        moved(&mut wall, DVec3::new(0.0, y, 0.0));
+        let step = climber.step(&HOLD, &list(&[&wall]), 1.0 / rate);
+        let report = step.unwrap();
         let opens = |event: &ClimberEvent| matches!(event, ClimberEvent::ShakenOff { .. });
         if report.events.iter().any(opens) {
             return time;
@@ -38,8 +37,7 @@ fn the_same_shake_opens_the_grip_at_the_same_time_at_any_rate() {
 }
 
 fn held(wall: &SkinnedSurface) -> Climber {
-    let mut climber =
-        Climber::new(ClimberConfig::colossus_climber(), DVec3::new(0.0, 0.0, 1.4)).unwrap();
+    let mut climber = climber(DVec3::new(0.0, 0.0, 1.4));
     run(&mut climber, &[wall], &HOLD, 5);
     climber
 }
@@ -54,7 +52,7 @@ fn a_jolt_of_the_hold_makes_it_hang_only_above_the_threshold() {
         let tick = crate::scene::DT;
         let gain = -libm::expm1(-tick / config.shake_time) / tick;
         let speed = share * config.grip.unwrap().hang_acceleration / gain;
-        moved(&mut wall, DVec3::X * speed * tick, DQuat::IDENTITY);
+        moved(&mut wall, DVec3::X * speed * tick);
         step(&mut climber, &[&wall], &HOLD);
         assert_eq!(climber.state().mode, mode, "{share}: {:?}", climber.state());
     }
@@ -70,7 +68,7 @@ fn noise_of_a_millimetre_never_shakes_off() {
     for _ in 0..3600 {
         let mut one = || (rng.f64() * 2.0 - 1.0) * 1e-3;
         let at = DVec3::new(one(), one(), one());
-        moved(&mut wall, at, DQuat::IDENTITY);
+        moved(&mut wall, at);
         step(&mut climber, &[&wall], &HOLD);
         assert_eq!(climber.state().mode, ClimberMode::Holding);
     }
@@ -88,30 +86,26 @@ fn a_teleport_does_not_count_as_shake() {
         at.z += 0.05 * (f64::from(tick) / 60.0).min(1.0);
         if tick == 180 {
             at += DVec3::new(100.0, 30.0, -20.0);
-            placed(&mut wall, at, DQuat::IDENTITY);
+            placed(&mut wall, at);
         } else {
-            moved(&mut wall, at, DQuat::IDENTITY);
+            moved(&mut wall, at);
         }
         step(&mut climber, &[&wall], &HOLD);
         assert_eq!(climber.state().mode, ClimberMode::Holding, "{tick}");
         let off = climber.state().position - at - held_at;
         assert!(off.length() < 1e-3, "{tick} {off}");
     }
-    assert!(
-        climber.state().shake.length() < 1e-3,
-        "{:?}",
-        climber.state()
-    );
+    let state = climber.state();
+    assert!(state.shake.length() < 1e-3, "{state:?}");
 }
 
 #[test]
 fn stamina_comes_back_on_firm_ground() {
     let ground = cuboid(Vec3::new(5.0, 1.0, 5.0), FUR);
-    let mut climber =
-        Climber::new(ClimberConfig::colossus_climber(), DVec3::new(0.0, 1.4, 0.0)).unwrap();
+    let mut climber = climber(DVec3::new(0.0, 1.4, 0.0));
     run(&mut climber, &[&ground], &HOLD, 600);
     let spent = climber.state().stamina;
     assert!((spent - 0.75).abs() < 0.01, "{spent}");
-    run(&mut climber, &[&ground], &ClimberInput::default(), 120);
+    run(&mut climber, &[&ground], &IDLE, 120);
     assert!(climber.state().stamina == 1.0, "{:?}", climber.state());
 }

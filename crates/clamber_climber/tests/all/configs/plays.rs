@@ -1,28 +1,19 @@
 //! The plays of each configuration, at 60 Hz.
 
 use clamber_climber::{
-    Blow, Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepReport,
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepReport,
 };
-use clamber_world::{HalfSpace, Obstacle, ObstacleId, SurfaceKind, SurfaceTag, TriangleTerrain};
+use clamber_world::{HalfSpace, Obstacle, TriangleTerrain};
 use glam::{DVec3, Vec3};
+
+use crate::input::{HOLD, IDLE, grip_walk, high_jump, struck, walk};
+use crate::scene::{DT, FUR, list_owned};
 
 /// Ticks a second.
 const RATE: f64 = 60.0;
 
-/// Length of a tick, seconds.
-const DT: f64 = 1.0 / RATE;
-
 /// Longest time in a mode other than standing, holding and hanging, seconds.
 const LONGEST: f64 = 10.0;
-
-/// The tag of fur, which can be gripped.
-const FUR: SurfaceTag = SurfaceTag::new(SurfaceKind::Fur);
-
-/// No input.
-const IDLE: ClimberInput = ClimberInput::IDLE;
-
-/// Input that only holds the grip.
-const HOLD: ClimberInput = ClimberInput { grip: true, ..IDLE };
 
 type Outcome = Result<(), String>;
 
@@ -38,11 +29,8 @@ impl Run {
     }
 
     fn step(&mut self, input: &ClimberInput) -> StepReport {
-        let each = self.obstacles.iter().enumerate();
-        let listed: Vec<(ObstacleId, &dyn Obstacle)> = each
-            .map(|(index, obstacle)| (ObstacleId(index as u64), &**obstacle))
-            .collect();
-        self.climber.step(input, &listed, DT).unwrap()
+        let step = self.climber.step(input, &list_owned(&self.obstacles), DT);
+        step.unwrap()
     }
 
     fn mode(&self) -> ClimberMode {
@@ -84,6 +72,11 @@ fn near(what: &str, found: f64, due: f64, slack: f64) -> Outcome {
     if is_near { Ok(()) } else { Err(told()) }
 }
 
+fn tireless(config: &ClimberConfig) -> ClimberConfig {
+    let stamina = None;
+    ClimberConfig { stamina, ..*config }
+}
+
 fn standing(config: &ClimberConfig) -> Result<Run, String> {
     let height = config.body.radius * 1.5;
     let mut run = Run::new(config, DVec3::Y * height, vec![floor()]);
@@ -102,10 +95,7 @@ pub(crate) fn drops_and_stands(config: &ClimberConfig) -> Outcome {
 
 pub(crate) fn walks(config: &ClimberConfig) -> Outcome {
     let mut run = standing(config)?;
-    let walk = ClimberInput {
-        walk: DVec3::X,
-        ..IDLE
-    };
+    let walk = walk(DVec3::X);
     let due = config.ground.walk_speed;
     if config.ground.acceleration * 0.9 < due {
         return Ok(());
@@ -120,19 +110,8 @@ pub(crate) fn jumps(config: &ClimberConfig) -> Outcome {
     let speed = config.ground.jump_speed;
     let gravity = config.gravity.length();
     let mut top = 0.0f64;
-    let jump = ClimberInput {
-        jump: true,
-        jump_held: true,
-        ..IDLE
-    };
-    run.step(&jump);
-    top = top.max(run.place().y - from);
-    let held = ClimberInput {
-        jump: false,
-        ..jump
-    };
-    for _ in 0..(2.0 * speed / gravity * RATE) as u32 {
-        run.step(&held);
+    for tick in 0..=(2.0 * speed / gravity * RATE) as u32 {
+        run.step(&high_jump(tick == 0));
         top = top.max(run.place().y - from);
     }
     // The highest position is seen at the end of a tick only.
@@ -164,14 +143,7 @@ pub(crate) fn slides_down(config: &ClimberConfig) -> Outcome {
 pub(crate) fn is_knocked_over(config: &ClimberConfig) -> Outcome {
     let mut run = standing(config)?;
     let speed = libm::sqrt(config.gravity.length() * config.body.radius);
-    let blow = ClimberInput {
-        blow: Some(Blow {
-            velocity: DVec3::new(3.0, 1.0, 0.5) * speed,
-            damage: 0.0,
-            by: None,
-        }),
-        ..IDLE
-    };
+    let blow = struck(DVec3::new(3.0, 1.0, 0.5) * speed, IDLE);
     run.step(&blow);
     run.comes_to_stand()
 }
@@ -195,21 +167,14 @@ fn holding(config: &ClimberConfig) -> Result<Option<Run>, String> {
 }
 
 pub(crate) fn climbs(config: &ClimberConfig) -> Outcome {
-    let config = &ClimberConfig {
-        stamina: None,
-        ..*config
-    };
-    let Some(mut run) = holding(config)? else {
+    let Some(mut run) = holding(&tireless(config))? else {
         return Ok(());
     };
     let grip = config.grip.unwrap();
     if grip.max_overhang < 1.58 {
         return Ok(());
     }
-    let up = ClimberInput {
-        walk: DVec3::X,
-        ..HOLD
-    };
+    let up = grip_walk(DVec3::X);
     let found = run.speed(&up, DVec3::Y);
     near("climbs at", found, grip.climb_speed, 1e-9)
 }
@@ -249,10 +214,7 @@ fn hanging(config: &ClimberConfig) -> Result<Option<Run>, String> {
     let below = 0.7 * ledge.reach_up;
     let start = DVec3::new(-1.02 * radius, -below, 0.0);
     let mut run = Run::new(config, start, block(radius));
-    let ahead = ClimberInput {
-        walk: DVec3::X * 0.01,
-        ..HOLD
-    };
+    let ahead = grip_walk(DVec3::X * 0.01);
     run.step(&ahead);
     let can = below > radius && ledge.reach > 0.05 * radius;
     match run.mode() {
@@ -265,11 +227,7 @@ fn hanging(config: &ClimberConfig) -> Result<Option<Run>, String> {
 }
 
 pub(crate) fn hangs(config: &ClimberConfig) -> Outcome {
-    let config = &ClimberConfig {
-        stamina: None,
-        ..*config
-    };
-    let Some(mut run) = hanging(config)? else {
+    let Some(mut run) = hanging(&tireless(config))? else {
         return Ok(());
     };
     for _ in 0..180 {
@@ -285,11 +243,7 @@ pub(crate) fn hangs(config: &ClimberConfig) -> Outcome {
 }
 
 pub(crate) fn pulls_up(config: &ClimberConfig) -> Outcome {
-    let config = &ClimberConfig {
-        stamina: None,
-        ..*config
-    };
-    let Some(mut run) = hanging(config)? else {
+    let Some(mut run) = hanging(&tireless(config))? else {
         return Ok(());
     };
     // First, the climber is drawn into its place.
@@ -299,10 +253,7 @@ pub(crate) fn pulls_up(config: &ClimberConfig) -> Outcome {
     if run.mode() == ClimberMode::Standing {
         return Ok(());
     }
-    let up = ClimberInput {
-        walk: DVec3::X,
-        ..HOLD
-    };
+    let up = grip_walk(DVec3::X);
     let due = config.ledge.unwrap().pull_up_time;
     for tick in 1..=((due + 1.0) * 1.1 * RATE) as u32 {
         let report = run.step(&up);
@@ -311,8 +262,6 @@ pub(crate) fn pulls_up(config: &ClimberConfig) -> Outcome {
         }
     }
     let memory = run.climber.state().ledge_hanging;
-    Err(format!(
-        "{:?}, {memory:?} after {due} s and one",
-        run.mode()
-    ))
+    let mode = run.mode();
+    Err(format!("{mode:?}, {memory:?} after {due} s and one"))
 }

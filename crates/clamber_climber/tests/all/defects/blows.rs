@@ -1,19 +1,28 @@
 //! Blows on a climber that stands or holds on, without tumbling.
 
-use clamber_climber::ClimberMode;
-use clamber_climber::{Blow, Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput};
+use clamber_climber::{
+    Blow, Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput, ClimberMode,
+};
 use glam::{DVec3, Vec3};
 
-use crate::defects::common::{tick, v};
-use crate::scene::{FUR, HOLD, STONE, cuboid};
-use crate::stage::{IDLE, Played, Run, Shape, Stage};
+use crate::cases::pairs;
+use crate::defects::common::v;
+use crate::events::{count, is_hurt};
+use crate::input::{HOLD, IDLE, grip_walk};
+use crate::scene::{FUR, STONE, climber, cuboid, tick_among};
+use crate::stage::{Played, Run, Shape, Stage};
 
-fn blow(velocity: DVec3) -> Option<Blow> {
-    Some(Blow {
+/// An input with a blow that does damage.
+fn hurt(velocity: DVec3, input: ClimberInput) -> ClimberInput {
+    let blow = Blow {
         velocity,
         damage: 0.1,
         by: None,
-    })
+    };
+    ClimberInput {
+        blow: Some(blow),
+        ..input
+    }
 }
 
 fn without_tumble() -> ClimberConfig {
@@ -26,32 +35,25 @@ fn without_tumble() -> ClimberConfig {
 #[test]
 fn a_blow_moves_a_climber_on_its_feet() {
     let mut last = 0.0;
-    for hz in [30.0, 60.0, 240.0] {
-        for speed in [0.5, 1.0, 2.0, 2.9, 3.1, 3.2, 10.0, 50.0] {
-            let stage =
-                Stage::at(Played::Root, 1.0 / hz, DVec3::ZERO).with_still(&Shape::floor(100.0));
-            let mut run = Run::new(stage, without_tumble(), DVec3::ZERO).settle();
-            let input = ClimberInput {
-                blow: blow(v(speed, 0.0, 0.0)),
-                ..IDLE
-            };
-            let report = run.step(&input);
-            let hurt = |event: &&ClimberEvent| matches!(event, ClimberEvent::Hurt { .. });
-            let told = format!("{speed} m/s at {hz} Hz: {:?}", report.events);
-            assert_eq!(report.events.iter().filter(hurt).count(), 1, "{told}");
-            run.steps((5.0 * hz) as u32, &IDLE);
-            let moved = run.position().x;
-            // Friction alone brakes the climber to rest: feet do not stop a climber that slides.
-            let expected = speed * speed / (2.0 * run.config().ground.friction);
-            let slack = 0.02 * expected + speed / hz;
-            assert!(
-                (moved - expected).abs() <= slack,
-                "{told}: {moved} m of {expected} m"
-            );
-            assert_eq!(run.mode(), ClimberMode::Standing, "{told}");
-            if speed == 50.0 {
-                last = moved;
-            }
+    let speeds = [0.5, 1.0, 2.0, 2.9, 3.1, 3.2, 10.0, 50.0];
+    for (hz, speed) in pairs([30.0, 60.0, 240.0], speeds) {
+        let stage = Stage::at_rate(Played::Root, hz).with_still(&Shape::floor(100.0));
+        let mut run = Run::new(stage, without_tumble(), DVec3::ZERO).settle();
+        let report = run.step(&hurt(v(speed, 0.0, 0.0), IDLE));
+        let told = format!("{speed} m/s at {hz} Hz: {:?}", report.events);
+        assert_eq!(count(&report.events, is_hurt), 1, "{told}");
+        run.steps((5.0 * hz) as u32, &IDLE);
+        let moved = run.position().x;
+        // Friction alone brakes the climber to rest: feet do not stop a climber that slides.
+        let expected = speed * speed / (2.0 * run.config().ground.friction);
+        let slack = 0.02 * expected + speed / hz;
+        assert!(
+            (moved - expected).abs() <= slack,
+            "{told}: {moved} m of {expected} m"
+        );
+        assert_eq!(run.mode(), ClimberMode::Standing, "{told}");
+        if speed == 50.0 {
+            last = moved;
         }
     }
     assert!(last > 50.0, "{last}");
@@ -65,19 +67,16 @@ fn a_blow_moves_a_climber_on_its_hold() {
         for (direction, aside) in [(DVec3::X, true), (DVec3::Z, false)] {
             let mut climber = Climber::new(without_tumble(), v(0.0, 1.0, 3.5)).unwrap();
             for _ in 0..30 {
-                tick(&mut climber, &[&fur], &HOLD);
+                tick_among(&mut climber, &[&fur], &HOLD);
             }
             assert_eq!(climber.state().mode, ClimberMode::Holding);
             let from = climber.state().position;
-            let input = ClimberInput {
-                blow: blow(direction * speed),
-                ..HOLD
-            };
+            let input = hurt(direction * speed, HOLD);
             let mut farthest = 0.0f64;
             let mut events = Vec::new();
             for k in 0..30 {
                 let input = if k == 0 { &input } else { &HOLD };
-                events.extend(tick(&mut climber, &[&fur], input).events);
+                events.extend(tick_among(&mut climber, &[&fur], input).events);
                 farthest = farthest.max((climber.state().position - from).dot(direction));
             }
             let told = format!("{speed} m/s along {direction}: {farthest} m, {events:?}");
@@ -88,19 +87,12 @@ fn a_blow_moves_a_climber_on_its_hold() {
         }
         // Only the fast blow takes the climber off a ledge.
         let mut climber = Climber::new(without_tumble(), v(0.3, 2.75, 3.5)).unwrap();
-        let toward = ClimberInput {
-            walk: -DVec3::Z * 0.1,
-            ..HOLD
-        };
+        let toward = grip_walk(-DVec3::Z * 0.1);
         for _ in 0..60 {
-            tick(&mut climber, &[&stone], &toward);
+            tick_among(&mut climber, &[&stone], &toward);
         }
         assert_eq!(climber.state().mode, ClimberMode::LedgeHanging);
-        let input = ClimberInput {
-            blow: blow(DVec3::Z * speed),
-            ..HOLD
-        };
-        let report = tick(&mut climber, &[&stone], &input);
+        let report = tick_among(&mut climber, &[&stone], &hurt(DVec3::Z * speed, HOLD));
         let hangs = climber.state().mode == ClimberMode::LedgeHanging;
         assert_eq!(hangs, speed < 4.0, "{speed}: {:?}", report.events);
     }
@@ -109,16 +101,10 @@ fn a_blow_moves_a_climber_on_its_hold() {
 #[test]
 fn damage_outside_0_to_1_is_refused() {
     for damage in [7.0, -1.0, 1.0 + 1e-9, -f64::MIN_POSITIVE] {
-        let mut climber = Climber::new(ClimberConfig::colossus_climber(), DVec3::ZERO).unwrap();
+        let mut climber = climber(DVec3::ZERO);
         let before = *climber.state();
-        let input = ClimberInput {
-            blow: Some(Blow {
-                velocity: DVec3::X,
-                damage,
-                by: None,
-            }),
-            ..IDLE
-        };
+        let mut input = hurt(DVec3::X, IDLE);
+        input.blow.as_mut().unwrap().damage = damage;
         let expected = ClimberError::OutOfRange {
             name: "blow.damage",
             range: "from 0 to 1",

@@ -1,42 +1,17 @@
 //! Helpers that several of the tests share.
 
-use clamber_climber::{
-    Climber, ClimberEvent, ClimberInput, ClimberState, ContactQuery, StepReport, StepRules,
-};
-use clamber_surface::surface::SkinnedSurface;
+use clamber_climber::{Climber, ClimberInput, ContactQuery, StepReport, StepRules};
 use clamber_world::rapier3d::prelude::{ColliderBuilder, Vector};
 use clamber_world::{
-    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, TargetMotion,
-    WorldCapsule,
+    Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, TargetMotion, WorldCapsule,
 };
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
-use crate::scene::{DT, placed};
+use crate::scene::{DT, list};
 use crate::stage::Shape;
 
 pub(crate) const fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
-}
-
-/// Places a surface at its first position.
-pub(crate) fn at(mut surface: SkinnedSurface, place: DVec3) -> SkinnedSurface {
-    placed(&mut surface, place, DQuat::IDENTITY);
-    surface
-}
-
-/// Obstacles with the ids 0, 1, 2 and so on.
-pub(crate) fn list<'a>(obstacles: &[&'a dyn Obstacle]) -> Vec<(ObstacleId, &'a dyn Obstacle)> {
-    let ids = (0..).map(ObstacleId);
-    ids.zip(obstacles.iter().copied()).collect()
-}
-
-/// Steps a climber by one tick at 60 Hz.
-pub(crate) fn tick(
-    climber: &mut Climber,
-    obstacles: &[&dyn Obstacle],
-    input: &ClimberInput,
-) -> StepReport {
-    climber.step(input, &list(obstacles), DT).unwrap()
 }
 
 /// Steps a climber by one tick at 60 Hz, in which every contact can be gripped, or none.
@@ -51,37 +26,6 @@ pub(crate) fn tick_gripping(
     climber
         .step_with(input, &list(obstacles), &rules, DT)
         .unwrap()
-}
-
-/// Sets a climber's position and velocity, and keeps the rest of its state.
-pub(crate) fn put(climber: &mut Climber, position: DVec3, velocity: DVec3) {
-    let state = ClimberState {
-        position,
-        velocity,
-        ..*climber.state()
-    };
-    climber.restore(state).unwrap();
-}
-
-pub(crate) fn count(events: &[ClimberEvent], is_counted: impl Fn(&ClimberEvent) -> bool) -> usize {
-    events.iter().filter(|event| is_counted(event)).count()
-}
-
-pub(crate) fn is_lost_footing(event: &ClimberEvent) -> bool {
-    matches!(event, ClimberEvent::LostFooting { .. })
-}
-
-pub(crate) fn is_landed(event: &ClimberEvent) -> bool {
-    matches!(event, ClimberEvent::Landed { .. })
-}
-
-/// True if the climber gripped a hold, caught a ledge or landed.
-pub(crate) fn is_attached(event: &ClimberEvent) -> bool {
-    is_landed(event)
-        || matches!(
-            event,
-            ClimberEvent::Grabbed { .. } | ClimberEvent::LedgeCaught { .. }
-        )
 }
 
 /// An obstacle that answers queries, but reports motion only while `tells` is true.

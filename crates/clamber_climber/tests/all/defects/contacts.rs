@@ -7,9 +7,10 @@ use clamber_world::rapier3d::prelude::PhysicsWorld;
 use clamber_world::{BodyPoses, Obstacle, RapierTerrain};
 use glam::DVec3;
 
-use crate::defects::common::{tick, trimesh, v};
-use crate::scene::DT;
-use crate::stage::{Shape, walk};
+use crate::defects::common::{trimesh, v};
+use crate::input::{IDLE, walk};
+use crate::scene::{DT, put, tick_among};
+use crate::stage::Shape;
 
 /// A floor and two walls that meet in a corner at (5, 0, 5).
 fn corner() -> [Shape; 3] {
@@ -55,7 +56,7 @@ fn a_corner_of_one_mesh_lists_what_a_corner_of_three_lists() {
             let mut listed = BTreeMap::new();
             for k in 0..120 {
                 let obstacle: &dyn Obstacle = &terrain;
-                tick(
+                tick_among(
                     &mut climber,
                     &[obstacle],
                     &walk(v(1.0, 0.0, 1.0).normalize()),
@@ -71,12 +72,8 @@ fn a_corner_of_one_mesh_lists_what_a_corner_of_three_lists() {
         assert_eq!(lists[0], lists[1], "height {height}, over {} s", 30.0 * DT);
         for wall in [[-1, 0, 0], [0, 0, -1]] {
             let ticks = lists[0].get(&(format!("{:?}", ContactPhase::Swept), wall));
-            assert_eq!(
-                ticks,
-                Some(&30),
-                "height {height}, {wall:?}: {:?}",
-                lists[0]
-            );
+            let first = &lists[0];
+            assert_eq!(ticks, Some(&30), "height {height}, {wall:?}: {first:?}");
         }
     }
 }
@@ -93,10 +90,10 @@ fn two_faces_of_one_mesh_with_one_normal_are_two_contacts() {
     let mut config = ClimberConfig::walker();
     config.gravity = DVec3::ZERO;
     let mut climber = Climber::new(config, v(0.0, 0.5, 0.0)).unwrap();
-    crate::defects::common::put(&mut climber, v(0.3, 0.5, 0.0), v(3.0, 0.0, 0.0));
+    put(&mut climber, v(0.3, 0.5, 0.0), v(3.0, 0.0, 0.0));
     let mut most = 0;
     for _ in 0..30 {
-        tick(&mut climber, &[&terrain], &crate::stage::IDLE);
+        tick_among(&mut climber, &[&terrain], &IDLE);
         most = most.max(climber.contacts().len());
     }
     assert!(most >= 2, "{most}");

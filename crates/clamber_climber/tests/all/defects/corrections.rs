@@ -1,14 +1,14 @@
 //! Corrections of position (step-ups, snaps down, mantles and push-outs) do not become velocity.
 
-use clamber_climber::{
-    Blow, Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberObstacle,
-};
+use clamber_climber::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberObstacle};
 use clamber_world::Obstacle;
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 
-use crate::defects::common::{at, list, v};
-use crate::scene::{HOLD, STONE, cuboid, moved};
-use crate::stage::{IDLE, Played, Run, Shape, Stage, shifted, walk};
+use crate::cases::{pairs, triples};
+use crate::defects::common::v;
+use crate::input::{IDLE, grip_walk, struck, walk};
+use crate::scene::{STONE, climber, cuboid, cuboid_at, list, moved, walker};
+use crate::stage::{Played, Run, Shape, Stage, shifted};
 
 /// Tick rates, hertz.
 const RATES: [f64; 4] = [30.0, 60.0, 120.0, 240.0];
@@ -23,8 +23,7 @@ fn configs() -> [(&'static str, ClimberConfig); 2] {
 /// A climber before a step of 0.28 m. The step and the floor below it move at `frame`.
 fn one_step(hz: f64, config: ClimberConfig, frame: DVec3) -> Run {
     let shape = Shape::stairs(1, 0.28, 1.0, 4.0);
-    let stage =
-        Stage::at(Played::Root, 1.0 / hz, DVec3::ZERO).with(&shape, move |t| shifted(frame * t));
+    let stage = Stage::at_rate(Played::Root, hz).with(&shape, move |t| shifted(frame * t));
     Run::new(stage, config, v(0.1, 0.0, -1.0)).settle()
 }
 
@@ -80,33 +79,30 @@ fn assert_walks(run: &mut Run, told: &str) {
 
 #[test]
 fn steps_up_do_not_become_velocity() {
-    for hz in RATES {
-        for (name, config) in configs() {
-            for frame in [DVec3::ZERO, v(2.0, 1.0, 0.0), v(0.0, -3.0, 5.0)] {
-                // The frame starts to move in one tick, which must not throw or knock down the climber.
-                let mut config = config;
-                config.tumble = None;
-                config.ground.throw_acceleration = f64::INFINITY;
-                let mut run = one_step(hz, config, frame);
-                let mut highest = 0.0f64;
-                for k in 0..(1.0 * hz) as u32 {
-                    let was = run.position();
-                    let told = format!("{name} at {hz} Hz in a frame of {frame}, tick {k}");
-                    assert_walks(&mut run, &told);
-                    highest = highest.max((run.position() - was - frame / hz).y);
-                    let base = run.state().base_velocity;
-                    assert!((base - frame).length() < 0.03, "{told}: support {base}");
-                }
-                assert!(highest > 0.05, "{name} at {hz} Hz: never stepped up");
-            }
+    let frames = [DVec3::ZERO, v(2.0, 1.0, 0.0), v(0.0, -3.0, 5.0)];
+    for (hz, (name, config), frame) in triples(RATES, configs(), frames) {
+        // The frame starts to move in one tick, which must not throw or knock down the climber.
+        let mut config = config;
+        config.tumble = None;
+        config.ground.throw_acceleration = f64::INFINITY;
+        let mut run = one_step(hz, config, frame);
+        let mut highest = 0.0f64;
+        for k in 0..(1.0 * hz) as u32 {
+            let was = run.position();
+            let told = format!("{name} at {hz} Hz in a frame of {frame}, tick {k}");
+            assert_walks(&mut run, &told);
+            highest = highest.max((run.position() - was - frame / hz).y);
+            let base = run.state().base_velocity;
+            assert!((base - frame).length() < 0.03, "{told}: support {base}");
         }
+        assert!(highest > 0.05, "{name} at {hz} Hz: never stepped up");
     }
 }
 
 #[test]
 fn steps_down_do_not_become_velocity() {
     for hz in RATES {
-        let stage = Stage::at(Played::Root, 1.0 / hz, DVec3::ZERO)
+        let stage = Stage::at_rate(Played::Root, hz)
             .with_still(&Shape::boxed(v(-4.0, -1.0, -4.0), v(4.0, 0.18, 0.0)))
             .with_still(&Shape::boxed(v(-4.0, -1.0, 0.0), v(4.0, 0.0, 8.0)));
         let config = ClimberConfig::colossus_climber();
@@ -121,8 +117,7 @@ fn steps_down_do_not_become_velocity() {
 #[test]
 fn stairs_do_not_become_velocity() {
     for hz in RATES {
-        let stage = Stage::at(Played::Root, 1.0 / hz, DVec3::ZERO)
-            .with_still(&Shape::stairs(12, 0.2, 0.3, 4.0));
+        let stage = Stage::at_rate(Played::Root, hz).with_still(&Shape::stairs(12, 0.2, 0.3, 4.0));
         let config = ClimberConfig::colossus_climber();
         let mut run = Run::new(stage, config, v(0.1, 0.0, -1.0)).settle();
         for k in 0..3000 {
@@ -163,35 +158,21 @@ fn rises(run: &mut Run, first: &ClimberInput, keeps_ground: bool) -> f64 {
     highest
 }
 
-fn level_blow(tumbles: bool) -> ClimberInput {
-    let speed = if tumbles { 3.1 } else { 2.9 };
-    ClimberInput {
-        blow: Some(Blow {
-            velocity: v(speed, 0.0, 0.0),
-            damage: 0.0,
-            by: None,
-        }),
-        ..IDLE
-    }
-}
-
 #[test]
 fn a_climber_is_not_thrown_up_right_after_a_step_up() {
     let (mut worst, mut all) = (0.0f64, String::new());
-    for hz in RATES {
-        for (name, config) in configs() {
-            for (what, first, keeps_ground) in [
-                ("nothing", IDLE, true),
-                ("lost ground", IDLE, false),
-                ("lost ground while it walks", walk(DVec3::Z), false),
-                ("a blow", level_blow(false), true),
-                ("a harder blow", level_blow(true), true),
-            ] {
-                let mut run = stepped_up(hz, config);
-                let risen = rises(&mut run, &first, keeps_ground);
-                all += &format!("\n{name} at {hz} Hz, {what}: thrown up by {risen} m");
-                worst = worst.max(risen);
-            }
+    for (hz, (name, config)) in pairs(RATES, configs()) {
+        for (what, first, keeps_ground) in [
+            ("nothing", IDLE, true),
+            ("lost ground", IDLE, false),
+            ("lost ground while it walks", walk(DVec3::Z), false),
+            ("a blow", struck(v(2.9, 0.0, 0.0), IDLE), true),
+            ("a harder blow", struck(v(3.1, 0.0, 0.0), IDLE), true),
+        ] {
+            let mut run = stepped_up(hz, config);
+            let risen = rises(&mut run, &first, keeps_ground);
+            all += &format!("\n{name} at {hz} Hz, {what}: thrown up by {risen} m");
+            worst = worst.max(risen);
         }
     }
     assert!(worst <= 0.05, "{worst}: {all}");
@@ -203,7 +184,7 @@ fn a_level_blow_right_after_a_step_of_stairs_does_not_throw_the_climber_up() {
     for hz in RATES {
         let stairs = || {
             let shape = Shape::stairs(6, 0.2, 0.3, 4.0);
-            let stage = Stage::at(Played::Root, 1.0 / hz, DVec3::ZERO).with_still(&shape);
+            let stage = Stage::at_rate(Played::Root, hz).with_still(&shape);
             Run::new(stage, ClimberConfig::colossus_climber(), v(0.1, 0.0, -0.4)).settle()
         };
         let mut run = stairs();
@@ -214,7 +195,7 @@ fn a_level_blow_right_after_a_step_of_stairs_does_not_throw_the_climber_up() {
                 steps += 1;
                 let mut other = stairs();
                 other.put(state);
-                let risen = rises(&mut other, &level_blow(true), true);
+                let risen = rises(&mut other, &struck(v(3.1, 0.0, 0.0), IDLE), true);
                 if risen > 0.05 {
                     all += &format!("\n{hz} Hz, tick {k} at {}: {risen} m", state.position);
                 }
@@ -241,16 +222,12 @@ fn a_mantle_and_a_push_out_do_not_become_velocity() {
         let dt = 1.0 / hz;
         let mut block = cuboid(Vec3::new(4.0, 3.0, 3.0), STONE);
         let frame = v(1.0, 0.5, 0.0);
-        let mut climber =
-            Climber::new(ClimberConfig::colossus_climber(), v(0.3, 2.75, 3.5)).unwrap();
+        let mut climber = climber(v(0.3, 2.75, 3.5));
         let mut mantled = None;
         for k in 0..(3.0 * hz) as u32 {
-            moved(&mut block, frame * (f64::from(k) * dt), DQuat::IDENTITY);
+            moved(&mut block, frame * (f64::from(k) * dt));
             let toward = if k < (0.5 * hz) as u32 { -0.1 } else { -1.0 };
-            let input = ClimberInput {
-                walk: DVec3::Z * toward,
-                ..HOLD
-            };
+            let input = grip_walk(DVec3::Z * toward);
             let report = climber.step(&input, &list(&[&block]), dt).unwrap();
             if report.events.contains(&ClimberEvent::Mantled) {
                 mantled = Some(*climber.state());
@@ -263,15 +240,11 @@ fn a_mantle_and_a_push_out_do_not_become_velocity() {
 
         // A wall is placed in a standing climber, which is pushed out of it.
         for deep in [0.05, 0.2, 0.35] {
-            let floor = at(cuboid(Vec3::new(6.0, 1.0, 6.0), STONE), v(0.0, -1.0, 0.0));
-            let wall = at(
-                cuboid(Vec3::new(0.5, 2.0, 3.0), STONE),
-                v(-0.9 + deep, 2.05, 0.0),
-            );
-            let mut climber = Climber::new(ClimberConfig::walker(), v(0.0, 0.4, 0.0)).unwrap();
-            let only: [&dyn Obstacle; 1] = [&floor];
+            let floor = cuboid_at(Vec3::new(6.0, 1.0, 6.0), STONE, v(0.0, -1.0, 0.0));
+            let wall = cuboid_at(Vec3::new(0.5, 2.0, 3.0), STONE, v(-0.9 + deep, 2.05, 0.0));
+            let mut climber = walker(v(0.0, 0.4, 0.0));
             for _ in 0..4 {
-                climber.step(&IDLE, &list(&only), dt).unwrap();
+                climber.step(&IDLE, &list(&[&floor]), dt).unwrap();
             }
             for k in 0..4 {
                 climber.step(&IDLE, &list(&[&floor, &wall]), dt).unwrap();
@@ -289,31 +262,29 @@ fn a_mantle_and_a_push_out_do_not_become_velocity() {
 /// movements.
 #[test]
 fn a_climber_obstacle_goes_where_the_climber_has_gone() {
-    for hz in RATES {
-        for (name, config) in configs() {
-            let mut run = one_step(hz, config, DVec3::ZERO);
-            run.step(&walk(DVec3::Z));
-            let mut last: Option<DVec3> = None;
-            for k in 0..(1.5 * hz) as u32 {
-                run.stage.advance();
-                let (climber, dt) = (&run.climber, 1.0 / hz);
-                let obstacle = run
-                    .stage
-                    .in_world(|obstacles| ClimberObstacle::new(climber, obstacles, dt));
-                let above = climber.state().position + DVec3::Y * 5.0;
-                let head = obstacle.closest_point(above, 9.0).unwrap();
-                let motion = obstacle.motion(&head.material, dt).unwrap();
-                let told = format!("{name} at {hz} Hz, tick {k}: {motion:?}");
-                // The climber's ground is at rest.
-                let height = motion.position - climber.state().position;
-                assert!((height - DVec3::Y * 0.4).length() < 1e-9, "{told}");
-                if let Some(last) = last {
-                    let off = motion.previous_position.distance(last);
-                    assert!(off < 1e-9, "{told}: it was at {last}");
-                }
-                last = Some(motion.position);
-                run.step(&walk(DVec3::Z));
+    for (hz, (name, config)) in pairs(RATES, configs()) {
+        let mut run = one_step(hz, config, DVec3::ZERO);
+        run.step(&walk(DVec3::Z));
+        let mut last: Option<DVec3> = None;
+        for k in 0..(1.5 * hz) as u32 {
+            run.stage.advance();
+            let (climber, dt) = (&run.climber, 1.0 / hz);
+            let obstacle = run
+                .stage
+                .in_world(|obstacles| ClimberObstacle::new(climber, obstacles, dt));
+            let above = climber.state().position + DVec3::Y * 5.0;
+            let head = obstacle.closest_point(above, 9.0).unwrap();
+            let motion = obstacle.motion(&head.material, dt).unwrap();
+            let told = format!("{name} at {hz} Hz, tick {k}: {motion:?}");
+            // The climber's ground is at rest.
+            let height = motion.position - climber.state().position;
+            assert!((height - DVec3::Y * 0.4).length() < 1e-9, "{told}");
+            if let Some(last) = last {
+                let off = motion.previous_position.distance(last);
+                assert!(off < 1e-9, "{told}: it was at {last}");
             }
+            last = Some(motion.position);
+            run.step(&walk(DVec3::Z));
         }
     }
 }

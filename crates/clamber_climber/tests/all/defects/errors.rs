@@ -1,8 +1,6 @@
 //! Error messages name the wrong value, and are true of it.
 
-use clamber_climber::{
-    Climber, ClimberConfig, ClimberError, ClimberInput, ClimberState, HangConfig,
-};
+use clamber_climber::{Climber, ClimberConfig, ClimberError, ClimberState};
 use clamber_mover::{Mover, MoverBody, MoverMemory};
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::surface::{Anchor, SkinnedSurface};
@@ -10,8 +8,10 @@ use clamber_world::rapier3d::prelude::PhysicsWorld;
 use clamber_world::{Debris, DebrisConfig};
 use glam::{DVec3, Quat, Vec3};
 
+use crate::cases::pairs;
+use crate::input::IDLE;
+use crate::numbers::numbers;
 use crate::scene::{STONE, cuboid};
-use crate::stage::IDLE;
 
 /// Numbers of every kind that a range can refuse or accept.
 const NUMBERS: [f64; 8] = [
@@ -67,100 +67,23 @@ type Set<T> = fn(&mut T, f64);
 
 #[test]
 fn messages_about_configurations_are_true() {
-    let sets: [(&str, Set<ClimberConfig>); 37] = [
-        ("gravity", |c, x| c.gravity = DVec3::new(0.0, x, 0.0)),
-        ("shake_time", |c, x| c.shake_time = x),
-        ("body.radius", |c, x| {
-            c.body.radius = x;
-            c.body.margin = if x > 0.0 && x.is_finite() {
-                x / 40.0
-            } else {
-                0.01
-            };
-        }),
-        ("body.height", |c, x| c.body.height = x),
-        ("body.margin", |c, x| c.body.margin = x),
-        ("body.mass", |c, x| c.body.mass = x),
-        ("body.push_force", |c, x| c.body.push_force = x),
-        ("ground.max_slope", |c, x| c.ground.max_slope = x),
-        ("ground.walk_speed", |c, x| c.ground.walk_speed = x),
-        ("ground.jump_speed", |c, x| c.ground.jump_speed = x),
-        ("ground.snap_distance", |c, x| c.ground.snap_distance = x),
-        ("ground.step_height", |c, x| c.ground.step_height = x),
-        ("ground.acceleration", |c, x| c.ground.acceleration = x),
-        ("ground.friction", |c, x| c.ground.friction = x),
-        ("ground.jump_release_gravity", |c, x| {
-            c.ground.jump_release_gravity = x
-        }),
-        ("ground.throw_acceleration", |c, x| {
-            c.ground.throw_acceleration = x
-        }),
-        ("ground.terminal_speed", |c, x| c.ground.terminal_speed = x),
-        ("ground.slide_friction", |c, x| c.ground.slide_friction = x),
-        ("grip.reach", |c, x| c.grip.as_mut().unwrap().reach = x),
-        ("grip.catch_speed", |c, x| {
-            c.grip.as_mut().unwrap().catch_speed = x
-        }),
-        ("ledge.catch_speed", |c, x| {
-            c.ledge.as_mut().unwrap().catch_speed = x
-        }),
-        ("stamina.jump_cost", |c, x| {
-            c.stamina.as_mut().unwrap().jump_cost = x
-        }),
-        ("stamina.catch_cost", |c, x| {
-            c.stamina.as_mut().unwrap().catch_cost = x
-        }),
-        ("stamina.mantle_cost", |c, x| {
-            c.stamina.as_mut().unwrap().mantle_cost = x
-        }),
-        ("grip.max_overhang", |c, x| {
-            c.grip.as_mut().unwrap().max_overhang = x
-        }),
-        ("grip.hang_acceleration", |c, x| {
-            c.grip.as_mut().unwrap().hang_acceleration = x
-        }),
-        ("hang.arm_length", |c, x| {
-            c.hang = HangConfig {
-                arm_length: x,
-                ..c.hang
-            };
-        }),
-        ("hang.damping", |c, x| c.hang.damping = x),
-        ("ledge.pull_up_time", |c, x| {
-            c.ledge.as_mut().unwrap().pull_up_time = x
-        }),
-        ("ledge.drop", |c, x| c.ledge.as_mut().unwrap().drop = x),
-        ("stamina.refill", |c, x| {
-            c.stamina.as_mut().unwrap().refill = x
-        }),
-        ("stamina.hold_drain", |c, x| {
-            c.stamina.as_mut().unwrap().hold_drain = x
-        }),
-        ("stamina.shake_threshold", |c, x| {
-            c.stamina.as_mut().unwrap().shake_threshold = x
-        }),
-        ("tumble.restitution", |c, x| {
-            c.tumble.as_mut().unwrap().restitution = x
-        }),
-        ("tumble.friction", |c, x| {
-            c.tumble.as_mut().unwrap().friction = x
-        }),
-        ("tumble.knock_speed", |c, x| {
-            c.tumble.as_mut().unwrap().knock_speed = x
-        }),
-        ("health.fall_damage", |c, x| {
-            c.health.as_mut().unwrap().fall_damage = x
-        }),
-    ];
+    let usual = ClimberConfig::colossus_climber();
     let mut refused = 0;
-    for (name, set) in sets {
-        for number in NUMBERS {
-            let mut config = ClimberConfig::colossus_climber();
-            set(&mut config, number);
-            if let Err(error) = Climber::new(config, DVec3::ZERO) {
-                refused += 1;
-                assert_true(&format!("{name} = {number}"), &error, number);
-            }
+    let mut check = |told: &str, config: ClimberConfig, number: f64| {
+        if let Err(error) = Climber::new(config, DVec3::ZERO) {
+            refused += 1;
+            assert_true(&format!("{told} = {number}"), &error, number);
+        }
+    };
+    for number in NUMBERS {
+        let mut config = usual;
+        config.gravity = DVec3::Y * number;
+        check("gravity", config, number);
+        for index in 0..numbers(&mut config).len() {
+            let mut config = usual;
+            let field = numbers(&mut config).swap_remove(index);
+            *field.value = number;
+            check(field.name, config, number);
         }
     }
     assert!(refused > 100, "{refused}");
@@ -173,13 +96,11 @@ fn messages_about_angles_name_radians() {
         |c, x| c.ground.max_slope = x,
         |c, x| c.grip.as_mut().unwrap().max_overhang = x,
     ];
-    for set in sets {
-        for number in [-50.0, f64::INFINITY] {
-            let mut config = ClimberConfig::colossus_climber();
-            set(&mut config, number);
-            let text = Climber::new(config, DVec3::ZERO).unwrap_err().to_string();
-            assert!(text.contains("radians"), "{number}: {text}");
-        }
+    for (set, number) in pairs(sets, [-50.0, f64::INFINITY]) {
+        let mut config = ClimberConfig::colossus_climber();
+        set(&mut config, number);
+        let text = Climber::new(config, DVec3::ZERO).unwrap_err().to_string();
+        assert!(text.contains("radians"), "{number}: {text}");
     }
 }
 
@@ -191,7 +112,7 @@ fn messages_about_steps_inputs_and_states_are_true() {
             Err(error) => assert_true("dt", &error, number),
             Ok(_) => assert!(number > 0.0 && number.is_finite(), "dt {number}"),
         }
-        let mut input = ClimberInput::IDLE;
+        let mut input = IDLE;
         input.walk.x = number;
         match climber.step(&input, &[], 0.1) {
             Err(error) => assert_true("walk", &error, number),

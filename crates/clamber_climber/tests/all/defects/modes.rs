@@ -1,11 +1,11 @@
 //! Custom modes of a game end their tick, for every result of their handlers.
 
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, CustomMode, ModeContext,
-    NextMode, StepRules,
+    Climber, ClimberConfig, ClimberEvent, ClimberMode, CustomMode, ModeContext, NextMode, StepRules,
 };
 use glam::DVec3;
 
+use crate::input::IDLE;
 use crate::scene::DT;
 
 /// A charge that asks to begin anew in every tick.
@@ -49,7 +49,7 @@ fn a_mode_that_changes_to_itself_stays() {
     let mut climber = Climber::new(ClimberConfig::walker(), DVec3::ZERO).unwrap();
     let rules = StepRules::with_modes(&[&Charge]);
     for tick in 1..=3 {
-        let report = climber.step_with(&ClimberInput::IDLE, &[], &rules, DT);
+        let report = climber.step_with(&IDLE, &[], &rules, DT);
         let report = report.unwrap();
         let mode = ClimberMode::Custom(1);
         assert_eq!(climber.state().mode, mode);
@@ -66,7 +66,7 @@ fn modes_that_hand_over_to_each_other_end_their_tick() {
     let mut climber = Climber::new(ClimberConfig::walker(), DVec3::ZERO).unwrap();
     let rules = StepRules::with_modes(&[&PingPong(2), &PingPong(3)]);
     for tick in 1..=3 {
-        let report = climber.step_with(&ClimberInput::IDLE, &[], &rules, DT);
+        let report = climber.step_with(&IDLE, &[], &rules, DT);
         let report = report.unwrap();
         assert!(report.changes_left, "{report:?}");
         let ran = climber.state().memory[0];

@@ -1,12 +1,14 @@
 //! No tick moves the body farther than its speed and its reach allow, and a support out of reach is let go.
 
-use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode};
+use clamber_climber::{Climber, ClimberInput, ClimberMode};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::Obstacle;
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 
-use crate::defects::common::{at, tick, v};
-use crate::scene::{DT, FUR, HOLD, STONE, cuboid, moved};
+use crate::cases::pairs;
+use crate::defects::common::v;
+use crate::input::HOLD;
+use crate::scene::{DT, FUR, STONE, climber, cuboid, cuboid_at, moved, tick_among};
 
 /// Checks the displacement of a climber in each tick, and how long it keeps a support that is out of reach.
 #[derive(Default)]
@@ -23,7 +25,7 @@ impl Watch {
         told: &str,
     ) {
         let before = *climber.state();
-        let report = tick(climber, obstacles, input);
+        let report = tick_among(climber, obstacles, input);
         let state = climber.state();
         let config = climber.config();
         let (grip, ledge) = (config.grip.unwrap(), config.ledge.unwrap());
@@ -92,28 +94,25 @@ fn hollow() -> [SkinnedSurface; 5] {
         (v(0.0, half + 1.0, 0.0), Vec3::new(1.0, 1.0, 1.0)),
         (v(0.0, -half - 1.0, 0.0), Vec3::new(1.0, 1.0, 1.0)),
     ]
-    .map(|(place, half)| at(cuboid(half, FUR), place))
+    .map(|(place, half)| cuboid_at(half, FUR, place))
 }
 
 #[test]
 fn climbing_in_a_hollow_keeps_within_reach() {
     let walls = hollow();
     let obstacles: Vec<&dyn Obstacle> = walls.iter().map(|wall| wall as &dyn Obstacle).collect();
-    for first in directions() {
-        for second in [DVec3::X, -DVec3::Y, DVec3::Z] {
-            let mut climber =
-                Climber::new(ClimberConfig::colossus_climber(), v(0.1, 0.0, -0.55)).unwrap();
-            let mut watch = Watch::default();
-            for k in 0..90 {
-                let climb = if k % 30 < 20 { first } else { second };
-                let input = ClimberInput { climb, ..HOLD };
-                watch.step(
-                    &mut climber,
-                    &obstacles,
-                    &input,
-                    &format!("{first} {second} tick {k}"),
-                );
-            }
+    for (first, second) in pairs(directions(), [DVec3::X, -DVec3::Y, DVec3::Z]) {
+        let mut climber = climber(v(0.1, 0.0, -0.55));
+        let mut watch = Watch::default();
+        for k in 0..90 {
+            let climb = if k % 30 < 20 { first } else { second };
+            let input = ClimberInput { climb, ..HOLD };
+            watch.step(
+                &mut climber,
+                &obstacles,
+                &input,
+                &format!("{first} {second} tick {k}"),
+            );
         }
     }
 }
@@ -123,13 +122,9 @@ fn climbing_in_a_hollow_keeps_within_reach() {
 fn climbing_around_a_blocked_edge_keeps_within_reach() {
     let block = cuboid(Vec3::ONE, FUR);
     for gap in [0.1, 0.3, 0.5, 0.7, 0.85] {
-        let plate = at(
-            cuboid(Vec3::new(0.1, 3.0, 3.0), STONE),
-            v(1.1 + gap, 0.0, 0.0),
-        );
+        let plate = cuboid_at(Vec3::new(0.1, 3.0, 3.0), STONE, v(1.1 + gap, 0.0, 0.0));
         for first in directions() {
-            let mut climber =
-                Climber::new(ClimberConfig::colossus_climber(), v(0.0, 0.0, 1.42)).unwrap();
+            let mut climber = climber(v(0.0, 0.0, 1.42));
             let mut watch = Watch::default();
             for k in 0..120 {
                 let climb = if k < 60 { first } else { -DVec3::Z };
@@ -156,19 +151,19 @@ fn against_a_post(is_crushed: bool) {
             for (speed, half) in posts {
                 let tag = if name == "fur" { FUR } else { STONE };
                 let mut block = cuboid(Vec3::new(4.0, 3.0, 3.0), tag);
-                let mut climber = Climber::new(ClimberConfig::colossus_climber(), start).unwrap();
+                let mut climber = climber(start);
                 let mut watch = Watch::default();
                 for k in 0..20 {
-                    moved(&mut block, DVec3::ZERO, DQuat::IDENTITY);
+                    moved(&mut block, DVec3::ZERO);
                     let input = ClimberInput { walk, ..HOLD };
                     let told = format!("{name} tick {k}");
                     watch.step(&mut climber, &[&block], &input, &told);
                 }
                 let place = climber.state().position + way * (0.65 + half);
-                let post = at(cuboid(Vec3::splat(half as f32), STONE), place);
+                let post = cuboid_at(Vec3::splat(half as f32), STONE, place);
                 for k in 0..60 {
                     let by = way * (speed * DT * f64::from(k));
-                    moved(&mut block, by, DQuat::IDENTITY);
+                    moved(&mut block, by);
                     let told = format!("{name} goes {way} at {speed} m/s, post {half}, tick {k}");
                     watch.step(&mut climber, &[&block, &post], &HOLD, &told);
                 }

@@ -4,6 +4,8 @@ use clamber_climber::{Climber, ClimberConfig, ClimberError, ContactQuery, Contac
 use clamber_world::{Obstacle, ObstacleId, SurfaceTag, TriangleTerrain};
 use glam::DVec3;
 
+use crate::cases::pairs;
+
 /// Sizes of the bodies, relative to a radius of 0.4 m.
 const SIZES: [f64; 4] = [1.0, 0.02, 10.0, 100.0];
 
@@ -36,24 +38,22 @@ fn tall(size: f64, gravity: DVec3) -> ClimberConfig {
 
 #[test]
 fn a_body_turns_only_where_it_has_room() {
-    for size in SIZES {
-        for (height, fits) in [(1.0, false), (1.7, false), (2.0, true)] {
-            let terrain = corridor(height, size);
-            let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &terrain)];
-            let lying = tall(size, DVec3::X * -9.81);
-            let start = DVec3::Y * (0.41 * size);
-            let mut climber = Climber::new(lying, start).unwrap();
-            let before = *climber.state();
-            let upright = tall(size, DVec3::Y * -9.81);
-            let turned = climber.try_resize(upright, &obstacles);
-            let told = format!("size {size}, corridor of {height}: {turned:?}");
-            if fits {
-                assert_eq!(turned, Ok(()), "{told}");
-            } else {
-                assert!(matches!(turned, Err(ClimberError::NoRoom { .. })), "{told}");
-                assert_eq!(*climber.state(), before, "{told}");
-                assert_eq!(*climber.config(), lying, "{told}");
-            }
+    for (size, (height, fits)) in pairs(SIZES, [(1.0, false), (1.7, false), (2.0, true)]) {
+        let terrain = corridor(height, size);
+        let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &terrain)];
+        let lying = tall(size, DVec3::X * -9.81);
+        let start = DVec3::Y * (0.41 * size);
+        let mut climber = Climber::new(lying, start).unwrap();
+        let before = *climber.state();
+        let upright = tall(size, DVec3::Y * -9.81);
+        let turned = climber.try_resize(upright, &obstacles);
+        let told = format!("size {size}, corridor of {height}: {turned:?}");
+        if fits {
+            assert_eq!(turned, Ok(()), "{told}");
+        } else {
+            assert!(matches!(turned, Err(ClimberError::NoRoom { .. })), "{told}");
+            assert_eq!(*climber.state(), before, "{told}");
+            assert_eq!(*climber.config(), lying, "{told}");
         }
     }
 }

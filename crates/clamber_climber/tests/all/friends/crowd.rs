@@ -4,23 +4,20 @@ use clamber_climber::{
     Climber, ClimberConfig, ClimberGroup, ClimberInput, ClimberMode, ClimberState, ContactQuery,
     ContactRule, StepReport, StepRules,
 };
-use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::rig::Palette;
+use clamber_surface::geometry::Similarity;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::{DQuat, DVec3};
 
+use crate::input::IDLE;
 use crate::numbers::in_world_of_size;
-use crate::scene::{STONE, cuboid};
+use crate::scene::{STONE, cuboid, list, rest, throw};
 
 /// The tick rates of all plays of this test, hertz.
 pub(crate) const RATES: [f64; 4] = [30.0, 60.0, 120.0, 240.0];
 
 /// Sizes of the bodies, relative to a radius of 0.4 m.
 pub(crate) const SIZES: [f64; 4] = [1.0, 0.02, 0.3, 100.0];
-
-/// No input.
-pub(crate) const IDLE: ClimberInput = ClimberInput::IDLE;
 
 /// A walker of another size, in a world of that size.
 pub(crate) fn walker(size: f64) -> ClimberConfig {
@@ -43,10 +40,6 @@ pub(crate) struct Crowd {
     deck: DVec3,
     /// Size of the bodies, relative to a radius of 0.4 m.
     size: f64,
-}
-
-fn rest() -> Palette {
-    Palette::from_matrices([Affine::IDENTITY])
 }
 
 fn id(index: usize) -> ObstacleId {
@@ -103,15 +96,11 @@ impl Crowd {
         if let Some(first) = self.boxes.first_mut() {
             first.advance(&rest(), place).unwrap();
         }
-        let fixed: Vec<(ObstacleId, &dyn Obstacle)> = (0..)
-            .map(ObstacleId)
-            .zip(self.boxes.iter().map(|surface| surface as &dyn Obstacle))
-            .collect();
+        let boxes: Vec<_> = self.boxes.iter().map(|one| one as &dyn Obstacle).collect();
+        let fixed = list(&boxes);
         let climbers = &self.climbers;
-        let listed = self
-            .order
-            .iter()
-            .map(|index| (id(*index), &climbers[*index]));
+        let order = self.order.iter();
+        let listed = order.map(|index| (id(*index), &climbers[*index]));
         self.group.update(listed, &fixed, self.dt);
         let rule = self.rule;
         let mut reports = vec![StepReport::default(); self.climbers.len()];
@@ -136,6 +125,11 @@ impl Crowd {
         reports
     }
 
+    /// Steps with the deck at rest, and input of the first climber only.
+    pub(crate) fn step_first(&mut self, input: ClimberInput) -> Vec<StepReport> {
+        self.step(DVec3::ZERO, |index| if index == 0 { input } else { IDLE })
+    }
+
     /// Steps with the deck at rest and without input.
     pub(crate) fn rest(&mut self, seconds: f64) {
         for _ in 0..(seconds / self.dt).round() as u32 {
@@ -145,16 +139,13 @@ impl Crowd {
 
     /// Puts a climber at another place, in the air.
     pub(crate) fn put(&mut self, index: usize, position: DVec3) {
-        let climber = &mut self.climbers[index];
-        let state = *climber.state();
-        climber
-            .restore(ClimberState {
-                position,
-                support: None,
-                mode: ClimberMode::Falling,
-                ..state
-            })
-            .unwrap();
+        let state = ClimberState {
+            position,
+            support: None,
+            mode: ClimberMode::Falling,
+            ..*self.state(index)
+        };
+        self.climbers[index].restore(state).unwrap();
     }
 
     pub(crate) fn position(&self, index: usize) -> DVec3 {
@@ -167,11 +158,6 @@ impl Crowd {
 
     /// Sets the velocities of a climber and of its frame.
     pub(crate) fn throw(&mut self, index: usize, velocity: DVec3, base_velocity: DVec3) {
-        let state = ClimberState {
-            velocity,
-            base_velocity,
-            ..*self.state(index)
-        };
-        self.climbers[index].restore(state).unwrap();
+        throw(&mut self.climbers[index], velocity, base_velocity);
     }
 }

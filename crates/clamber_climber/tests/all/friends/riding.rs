@@ -1,9 +1,12 @@
 //! Climbers on a deck that shakes, side by side and on each other's heads.
 
-use clamber_climber::{ClimberEvent, ClimberMode};
+use clamber_climber::ClimberMode;
 use glam::DVec3;
 
-use crate::friends::crowd::{Crowd, IDLE, RATES, SIZES, walker};
+use crate::cases::triples;
+use crate::events::{count, is_crushed, is_moved_twice};
+use crate::friends::crowd::{Crowd, RATES, SIZES, walker};
+use crate::input::IDLE;
 
 /// The deck's displacement at a time: 0.2 m to either side, twice a second.
 fn shakes(time: f64, axis: DVec3) -> DVec3 {
@@ -21,7 +24,7 @@ fn ride(places: &[DVec3], axis: DVec3, size: f64, rate: f64, reverse: bool) {
         crowd.order.reverse();
     }
     crowd.rest(1.0);
-    let rest: Vec<DVec3> = (0..places.len())
+    let rest: Vec<_> = (0..places.len())
         .map(|index| crowd.position(index))
         .collect();
     for tick in 1..=(10.0 * rate) as u32 {
@@ -32,13 +35,10 @@ fn ride(places: &[DVec3], axis: DVec3, size: f64, rate: f64, reverse: bool) {
             let told = format!("size {size}, {rate} Hz along {axis}, {index} at tick {tick}");
             assert!(off < 0.01, "{told}: {off} m off, {:?}", crowd.state(index));
             assert_eq!(crowd.state(index).mode, ClimberMode::Standing, "{told}");
-            let jolts = report.events.iter().filter(|event| {
-                matches!(
-                    event,
-                    ClimberEvent::MovedRepeatedly { .. } | ClimberEvent::Crushed { .. }
-                )
+            let jolts = count(&report.events, |event| {
+                is_moved_twice(event) || is_crushed(event)
             });
-            assert_eq!(jolts.count(), 0, "{told}: {:?}", report.events);
+            assert_eq!(jolts, 0, "{told}: {:?}", report.events);
         }
     }
 }
@@ -46,26 +46,19 @@ fn ride(places: &[DVec3], axis: DVec3, size: f64, rate: f64, reverse: bool) {
 #[test]
 fn two_side_by_side_stay_on_their_points_of_a_deck_that_shakes() {
     let places = [DVec3::new(0.0, 0.4, 0.0), DVec3::new(0.8, 0.4, 0.0)];
-    for size in SIZES {
-        for (index, rate) in RATES.into_iter().enumerate() {
-            for axis in [DVec3::X, DVec3::Z, DVec3::new(0.6, 0.0, 0.8)] {
-                ride(&places, axis, size, rate, index % 2 == 0);
-            }
-        }
+    let axes = [DVec3::X, DVec3::Z, DVec3::new(0.6, 0.0, 0.8)];
+    for (size, (index, rate), axis) in triples(SIZES, RATES.into_iter().enumerate(), axes) {
+        ride(&places, axis, size, rate, index % 2 == 0);
     }
 }
 
 #[test]
 fn a_stack_of_three_stays_on_a_deck_that_shakes() {
     let places = [0.4, 1.2, 2.0].map(|height| DVec3::Y * height);
-    for size in SIZES {
-        for rate in RATES {
-            for reverse in [false, true] {
-                // Up and down, the deck is never faster than the climbers fall.
-                for axis in [DVec3::X, DVec3::Y * 0.25, DVec3::new(0.6, 0.2, 0.0)] {
-                    ride(&places, axis, size, rate, reverse);
-                }
-            }
+    for (size, rate, reverse) in triples(SIZES, RATES, [false, true]) {
+        // Up and down, the deck is never faster than the climbers fall.
+        for axis in [DVec3::X, DVec3::Y * 0.25, DVec3::new(0.6, 0.2, 0.0)] {
+            ride(&places, axis, size, rate, reverse);
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Eight climbers in a narrow room, with sticks and jumps at random.
 
-use clamber_climber::{ClimberConfig, ClimberInput, Others};
+use clamber_climber::{ClimberConfig, Others};
 use glam::DVec3;
 
-use crate::friends::crowd::{Crowd, IDLE};
+use crate::cases::pairs;
+use crate::friends::crowd::Crowd;
+use crate::input::IDLE;
 
 /// Half of the room's length, metres.
 const HALF: f64 = 1.5;
@@ -40,11 +42,9 @@ fn play(others: Others, height: f64, minutes: f64, seed: u64) {
         })
         .collect();
     let mut crowd = Crowd::new(config, &places, rate);
-    for axis in [DVec3::X, DVec3::Z] {
-        for side in [-1.0, 1.0] {
-            let half = DVec3::new(2.0, 8.0, 2.0) - axis * 1.5;
-            crowd.add_box(axis * (side * (HALF + 0.5)), half);
-        }
+    for (axis, side) in pairs([DVec3::X, DVec3::Z], [-1.0, 1.0]) {
+        let half = DVec3::new(2.0, 8.0, 2.0) - axis * 1.5;
+        crowd.add_box(axis * (side * (HALF + 0.5)), half);
     }
     let mut rng = fastrand::Rng::with_seed(seed);
     let mut inputs = [IDLE; 8];
@@ -57,20 +57,20 @@ fn play(others: Others, height: f64, minutes: f64, seed: u64) {
                 input.walk = DVec3::new(libm::cos(turn), 0.0, libm::sin(turn)) * share;
             }
         }
-        let before: Vec<DVec3> = (0..8).map(|index| crowd.position(index)).collect();
-        let speeds: Vec<f64> = (0..8)
-            .map(|index| crowd.state(index).velocity.length())
-            .collect();
-        crowd.step(DVec3::ZERO, |index| ClimberInput { ..inputs[index] });
-        for index in 0..8 {
+        let states = (0..8).map(|index| *crowd.state(index));
+        let before: Vec<_> = states.collect();
+        crowd.step(DVec3::ZERO, |index| inputs[index]);
+        for (index, was) in before.iter().enumerate() {
             let p = crowd.position(index);
             let told =
                 format!("{others:?}, height {height}, seed {seed}, tick {tick}, {index} at {p}");
             assert!(p.x.abs().max(p.z.abs()) < HALF - 0.38, "{told}: outside");
             assert!(p.y > 0.38, "{told}: below");
-            let own_way = beside_carrying(p - before[index], crowd.state(index).own_way);
-            let way = p.distance(before[index]).min(own_way);
-            let own = speeds[index].max(crowd.state(index).velocity.length()) / rate;
+            let own_way = beside_carrying(p - was.position, crowd.state(index).own_way);
+            let way = p.distance(was.position).min(own_way);
+            let states = [*was, *crowd.state(index)];
+            let [was, is] = states.map(|state| state.velocity.length());
+            let own = was.max(is) / rate;
             assert!(
                 way < farthest(others).max(own + 0.06),
                 "{told}: {way}, own {own}"
@@ -81,13 +81,9 @@ fn play(others: Others, height: f64, minutes: f64, seed: u64) {
 
 #[test]
 fn eight_stay_in_their_room() {
-    for (seed, others) in [Others::Block, Others::Push, Others::Pass]
-        .into_iter()
-        .enumerate()
-    {
-        for height in [0.0, 1.0] {
-            play(others, height, 0.5, seed as u64);
-        }
+    let kinds = [(Others::Block, 0), (Others::Push, 1), (Others::Pass, 2)];
+    for ((others, seed), height) in pairs(kinds, [0.0, 1.0]) {
+        play(others, height, 0.5, seed);
     }
 }
 

@@ -3,12 +3,16 @@
 use clamber_climber::{
     Climber, ClimberConfig, ClimberGroup, ClimberInput, ContactQuery, ContactRule, StepRules,
 };
-use clamber_world::{HalfSpace, Obstacle, ObstacleId, SurfaceKind, SurfaceTag};
+use clamber_world::{HalfSpace, ObstacleId};
 use glam::DVec3;
 
-use crate::friends::crowd::{IDLE, RATES, SIZES};
+use crate::cases::{pairs, triples};
+use crate::friends::crowd::{RATES, SIZES};
 use crate::held::Held;
+use crate::input::{HOLD, IDLE};
 use crate::numbers::in_world_of_size;
+use crate::scene::{FUR, list};
+use crate::stage::tireless;
 
 fn grips_friends(query: &ContactQuery<'_>) -> ContactRule {
     query.usual().with_grip(true)
@@ -26,7 +30,7 @@ fn weighed(
     let place = |at: &DVec3| Climber::new(config, *at).unwrap();
     let mut climbers: Vec<Climber> = places.iter().map(place).collect();
     let mut group = ClimberGroup::default();
-    let fixed: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), scales)];
+    let fixed = list(&[scales]);
     let dt = 1.0 / rate;
     let (settles, weighs) = ((2.0 * rate) as u32, rate as u32);
     let mut given = DVec3::ZERO;
@@ -54,42 +58,32 @@ fn weighed(
 
 #[test]
 fn a_tower_weighs_as_much_as_all_of_its_climbers() {
-    for size in SIZES {
-        for rate in RATES {
-            for count in 1..=4 {
-                let config = in_world_of_size(ClimberConfig::walker(), size);
-                let scales = Held(HalfSpace::below(0.0), 5.0);
-                let places: Vec<_> = (0..count)
-                    .map(|index| DVec3::Y * ((0.4 + 0.8 * f64::from(index)) * size))
-                    .collect();
-                let found = weighed(&scales, config, &places, &IDLE, rate);
-                let off = found - f64::from(count);
-                assert!(off.abs() < 0.01, "size {size}, {rate} Hz, {count}: {found}");
-            }
-        }
+    for (size, rate, count) in triples(SIZES, RATES, 1..=4) {
+        let config = in_world_of_size(ClimberConfig::walker(), size);
+        let scales = Held(HalfSpace::below(0.0), 5.0);
+        let places: Vec<_> = (0..count)
+            .map(|index| DVec3::Y * ((0.4 + 0.8 * f64::from(index)) * size))
+            .collect();
+        let found = weighed(&scales, config, &places, &IDLE, rate);
+        let off = found - f64::from(count);
+        assert!(off.abs() < 0.01, "size {size}, {rate} Hz, {count}: {found}");
     }
 }
 
 /// The upper climber holds a ceiling, and the lower one holds the upper one's feet.
 #[test]
 fn who_hangs_from_a_climber_that_hangs_weighs_on_its_hold() {
-    for size in SIZES {
-        for rate in RATES {
-            let config = ClimberConfig {
-                stamina: None,
-                ..ClimberConfig::colossus_climber()
-            };
-            let mut config = in_world_of_size(config, size);
-            config.grip.as_mut().unwrap().max_overhang = 1.7;
-            let ceiling = HalfSpace::behind(DVec3::Y * (6.0 * size), DVec3::NEG_Y).unwrap();
-            let scales = Held(ceiling.with_tag(SurfaceTag::new(SurfaceKind::Fur)), 5_000.0);
-            let grip = ClimberInput { grip: true, ..IDLE };
-            for count in [1, 2] {
-                let places = [DVec3::Y * (5.5 * size), DVec3::Y * (4.5 * size)];
-                let found = weighed(&scales, config, &places[..count], &grip, rate);
-                let off = found - count as f64;
-                assert!(off.abs() < 0.05, "size {size}, {rate} Hz, {count}: {found}");
-            }
+    for (size, rate) in pairs(SIZES, RATES) {
+        let config = tireless();
+        let mut config = in_world_of_size(config, size);
+        config.grip.as_mut().unwrap().max_overhang = 1.7;
+        let ceiling = HalfSpace::behind(DVec3::Y * (6.0 * size), DVec3::NEG_Y).unwrap();
+        let scales = Held(ceiling.with_tag(FUR), 5_000.0);
+        for count in [1, 2] {
+            let places = [DVec3::Y * (5.5 * size), DVec3::Y * (4.5 * size)];
+            let found = weighed(&scales, config, &places[..count], &HOLD, rate);
+            let off = found - count as f64;
+            assert!(off.abs() < 0.05, "size {size}, {rate} Hz, {count}: {found}");
         }
     }
 }

@@ -1,7 +1,7 @@
 use clamber_climber::{
     Climber, ClimberConfig, ClimberInput, ClimberObstacle, ContactQuery, StepReport, StepRules,
 };
-use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
+use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use clamber_surface::rig::{Clip, Palette, Playback, Skeleton};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
@@ -9,9 +9,7 @@ use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 
 use crate::creature::{clip, ground, skeleton, tube};
-
-/// Length of a tick, seconds.
-const TICK: f64 = 1.0 / 60.0;
+use crate::scene::{DT, rest};
 
 /// Number of creatures.
 pub(crate) const CREATURES: usize = 3;
@@ -55,8 +53,7 @@ impl Herd {
     pub(crate) fn new() -> Self {
         let mut floor = SkinnedSurface::new(ground());
         let under = Similarity::from_translation(DVec3::Y * -3.0);
-        let rest = Palette::from_matrices([Affine::IDENTITY]);
-        floor.place(&rest, under).unwrap();
+        floor.place(&rest(), under).unwrap();
         let mut herd = Self {
             skeleton: skeleton(),
             clip: clip(),
@@ -76,7 +73,7 @@ impl Herd {
     }
 
     fn palette(&self, tick: u32, index: usize) -> Palette {
-        let time = 0.3 * f64::from(tick) * TICK + 0.6 * index as f64;
+        let time = 0.3 * f64::from(tick) * DT + 0.6 * index as f64;
         let rest = self.skeleton.rest_pose();
         let pose = self.clip.sample(&rest, time, Playback::Loop).unwrap();
         self.skeleton.palette(&pose).unwrap()
@@ -136,7 +133,7 @@ impl Herd {
         }
         let climbers = self.climbers.iter();
         climbers
-            .map(|climber| ClimberObstacle::new(climber, &fixed, TICK))
+            .map(|climber| ClimberObstacle::new(climber, &fixed, DT))
             .collect()
     }
 
@@ -196,13 +193,13 @@ fn step(
         }
     };
     let rules = StepRules::by(&rule);
-    let report = climber.step_with(&input, &obstacles, &rules, TICK).unwrap();
+    let report = climber.step_with(&input, &obstacles, &rules, DT).unwrap();
     (climber.state().fingerprint(), report)
 }
 
 /// Pose of a creature's root. The creatures' centres are above each other, and move up and down.
 fn place(tick: u32, index: usize) -> Similarity {
-    let time = f64::from(tick) * TICK;
+    let time = f64::from(tick) * DT;
     let turn = turn(index, time);
     let roll = rotation_from_axis_angle(DVec3::X, 0.1 * libm::sin(2.0 * time));
     let bob = 0.3 * libm::sin(1.5 * time + index as f64);

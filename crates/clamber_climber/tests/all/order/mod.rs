@@ -4,6 +4,7 @@
 mod herd;
 
 use clamber_climber::{ClimberEvent, ClimberMode, StepReport};
+
 use herd::{CLIMBERS, CREATURES, Herd, Order};
 
 /// Length of the run, ticks.

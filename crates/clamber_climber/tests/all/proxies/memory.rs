@@ -1,21 +1,18 @@
 //! A steady tick of proxies allocates nothing.
 
-use clamber_climber::{ClimberConfig, ClimberInput};
 use clamber_world::rapier3d::prelude::RigidBodyBuilder;
 use glam::DVec3;
 
+use crate::cases::pairs;
+use crate::input::walk;
 use crate::proxies::scene::{SETTINGS, Scene, WORLD};
 
 /// Memory that proxies allocate in some ticks, with a load on the climber and, if it walks, another one in its way.
-fn taken(scene: &mut Scene, walk: DVec3, ticks: u32) -> u64 {
-    let input = ClimberInput {
-        walk,
-        ..ClimberInput::IDLE
-    };
+fn taken(scene: &mut Scene, direction: DVec3, ticks: u32) -> u64 {
     let mut taken = 0;
     for _ in 0..ticks {
         let dt = scene.dt();
-        scene.tick(&input);
+        scene.tick(&walk(direction));
         // Repeats the tick's work on proxies, without anything else in between.
         let world = &mut scene.world;
         let proxy = scene.proxy.as_mut().unwrap();
@@ -37,20 +34,13 @@ fn taken(scene: &mut Scene, walk: DVec3, ticks: u32) -> u64 {
 
 #[test]
 fn steady_ticks_allocate_nothing() {
-    for setting in SETTINGS {
-        for walk in [DVec3::ZERO, DVec3::X] {
-            let config = ClimberConfig::colossus_climber();
-            let mut scene = Scene::new(setting, config, DVec3::Y * 0.41).with_floor();
-            let body = || RigidBodyBuilder::dynamic().lock_rotations();
-            let load = scene.add(body(), [0.6; 3], DVec3::Y * 1.2, 5.0);
-            scene.add(body(), [1.0; 3], DVec3::new(1.0, 0.51, 0.0), 500.0);
-            taken(&mut scene, walk, 60);
-            assert_eq!(
-                taken(&mut scene, walk, 60),
-                0,
-                "{setting:?}, {walk}, {}",
-                scene.above(load)
-            );
-        }
+    for (setting, direction) in pairs(SETTINGS, [DVec3::ZERO, DVec3::X]) {
+        let mut scene = Scene::on_floor(setting);
+        let body = || RigidBodyBuilder::dynamic().lock_rotations();
+        let load = scene.add(body(), [0.6; 3], DVec3::Y * 1.2, 5.0);
+        scene.add(body(), [1.0; 3], DVec3::new(1.0, 0.51, 0.0), 500.0);
+        taken(&mut scene, direction, 60);
+        let told = format!("{setting:?}, {direction}, {}", scene.above(load));
+        assert_eq!(taken(&mut scene, direction, 60), 0, "{told}");
     }
 }

@@ -4,6 +4,8 @@ use clamber_climber::{ClimberConfig, ClimberInput, ClimberMode};
 use clamber_world::rapier3d::prelude::{RigidBodyBuilder, Vector};
 use glam::DVec3;
 
+use crate::cases::triples;
+use crate::input::IDLE;
 use crate::proxies::scene::{SETTINGS, Scene, Setting};
 
 /// Walks against a box for two seconds, with jumps if wanted. Returns the speed of the box and the climber's place.
@@ -21,7 +23,7 @@ fn walked(setting: Setting, mass: f64, jumps: bool, seen: bool) -> (f64, f64) {
         let input = ClimberInput {
             walk: DVec3::X,
             jump: jumps && tick % scene.ticks(0.7) == 0,
-            ..ClimberInput::IDLE
+            ..IDLE
         };
         scene.tick(&input);
     }
@@ -31,22 +33,18 @@ fn walked(setting: Setting, mass: f64, jumps: bool, seen: bool) -> (f64, f64) {
 
 #[test]
 fn a_walker_pushes_boxes_no_harder_with_a_proxy() {
-    for setting in SETTINGS {
-        for mass in [20.0, 200.0, 1e4, 1e6] {
-            for jumps in [false, true] {
-                let without = walked(setting, mass, jumps, false);
-                let with = walked(setting, mass, jumps, true);
-                let told = format!("{setting:?}, {mass} kg, jumps {jumps}: {with:?} {without:?}");
-                let slack = 1.02;
-                assert!(with.0 <= (without.0 * slack).min(3.01) + 0.01, "{told}");
-                assert!(with.0 >= without.0 / slack - 0.01, "{told}");
-                if !jumps {
-                    assert!(
-                        (with.1 - without.1).abs() < 0.1 + 0.05 * without.1,
-                        "{told}"
-                    );
-                }
-            }
+    for (setting, mass, jumps) in triples(SETTINGS, [20.0, 200.0, 1e4, 1e6], [false, true]) {
+        let without = walked(setting, mass, jumps, false);
+        let with = walked(setting, mass, jumps, true);
+        let told = format!("{setting:?}, {mass} kg, jumps {jumps}: {with:?} {without:?}");
+        let slack = 1.02;
+        assert!(with.0 <= (without.0 * slack).min(3.01) + 0.01, "{told}");
+        assert!(with.0 >= without.0 / slack - 0.01, "{told}");
+        if !jumps {
+            assert!(
+                (with.1 - without.1).abs() < 0.1 + 0.05 * without.1,
+                "{told}"
+            );
         }
     }
 }
@@ -72,7 +70,7 @@ fn what_carries_the_climber_does_not_collide_with_it() {
                 let body = scene.world.bodies.get_mut(raft).unwrap();
                 body.reset_forces(true);
                 body.add_force(Vector::new(0.0, push as f32, 0.0), true);
-                scene.tick(&ClimberInput::IDLE);
+                scene.tick(&IDLE);
                 let state = scene.climber.state();
                 let stands = state.mode == ClimberMode::Standing || tick < scene.ticks(0.2);
                 assert!(stands, "{setting:?}, tick {tick}: {:?}", state.mode);
@@ -94,7 +92,7 @@ fn the_climber_does_not_touch_its_own_proxy_and_a_removed_one_stops_nothing() {
     let setting = SETTINGS[0];
     let mut scene = Scene::new(setting, ClimberConfig::walker(), DVec3::Y * 0.41).with_floor();
     for _ in 0..60 {
-        scene.tick(&ClimberInput::IDLE);
+        scene.tick(&IDLE);
         let own = scene.proxy.as_ref().unwrap().collider().into_raw_parts();
         let key = u64::from(own.1) << 32 | u64::from(own.0);
         let touches = |contact: &&clamber_climber::ClimberContact| contact.material.key == key;
@@ -106,7 +104,7 @@ fn the_climber_does_not_touch_its_own_proxy_and_a_removed_one_stops_nothing() {
     assert_eq!((joints, scene.world.impulse_joints.len()), (0, 0));
     let load = scene.add(RigidBodyBuilder::dynamic(), [0.6; 3], DVec3::Y * 1.6, 10.0);
     for _ in 0..120 {
-        scene.tick(&ClimberInput::IDLE);
+        scene.tick(&IDLE);
     }
     assert!(scene.world.bodies[load].translation().y < 0.7);
 }

@@ -1,15 +1,15 @@
 //! Two worlds with the same input have the same bits, and so does a world that is restored.
 
-use clamber_climber::{ClimberConfig, ClimberInput};
+use clamber_climber::{Climber, ClimberInput};
 use clamber_world::rapier3d::prelude::RigidBodyBuilder;
 use clamber_world::{Debris, DebrisConfig, DebrisSnapshot};
 use glam::DVec3;
 
+use crate::input::IDLE;
 use crate::proxies::scene::{SETTINGS, Scene, Setting};
 
 fn rain(setting: Setting) -> Scene {
-    let config = ClimberConfig::colossus_climber();
-    let mut scene = Scene::new(setting, config, DVec3::Y * 0.41).with_floor();
+    let mut scene = Scene::on_floor(setting);
     let mut rng = fastrand::Rng::with_seed(5);
     for index in 0..12 {
         let mut any = || rng.f64() - 0.5;
@@ -37,7 +37,7 @@ fn input(tick: u32) -> ClimberInput {
     ClimberInput {
         walk: DVec3::new(libm::cos(angle), 0.0, libm::sin(angle)),
         jump: tick % 40 == 7,
-        ..ClimberInput::IDLE
+        ..IDLE
     }
 }
 
@@ -65,15 +65,13 @@ fn the_same_input_gives_the_same_bits_again_and_after_a_restore() {
         one.climber.restore(state).unwrap();
         one.proxy.clone_from(&proxy);
         assert_eq!(run(&mut one, 100..250), first, "{setting:?}: restored");
-        let mut fresh = Scene::new(setting, *one.climber.config(), DVec3::ZERO);
-        fresh.climber = clamber_climber::Climber::new(*one.climber.config(), DVec3::ZERO).unwrap();
+        let config = *one.climber.config();
+        let mut fresh = Scene::new(setting, config, DVec3::ZERO);
+        fresh.climber = Climber::new(config, DVec3::ZERO).unwrap();
         saved.restore(&mut fresh.world, &mut debris);
         fresh.climber.restore(state).unwrap();
         fresh.proxy = proxy;
-        assert_eq!(
-            run(&mut fresh, 100..250),
-            first,
-            "{setting:?}: in a fresh scene"
-        );
+        let again = run(&mut fresh, 100..250);
+        assert_eq!(again, first, "{setting:?}: in a fresh scene");
     }
 }

@@ -1,14 +1,16 @@
 //! A climber in a rapier world, at any size, rate and in any steadily moving frame.
 
-use clamber_climber::{Climber, ClimberConfig, ClimberInput, StepReport, StepRules};
-use clamber_world::rapier3d::prelude::Collider;
+use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode, StepReport, StepRules};
 use clamber_world::rapier3d::prelude::{
-    ColliderBuilder, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, Vector,
+    Collider, ColliderBuilder, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, Vector,
 };
 use clamber_world::{
     BodyPoses, ClimberProxy, Obstacle, ObstacleId, ProxyHit, RapierTerrain, apply_push,
 };
 use glam::DVec3;
+
+use crate::input::IDLE;
+use crate::scene::throw;
 
 /// Id of rapier's world.
 pub(crate) const WORLD: ObstacleId = ObstacleId(7);
@@ -42,9 +44,7 @@ impl Scene {
         world.integration_parameters.normalized_max_linear_velocity = 1e4;
         let frame = DVec3::Z * frame;
         let mut climber = Climber::new(config.scaled(size), position * size).unwrap();
-        let mut state = *climber.state();
-        (state.velocity, state.base_velocity) = (frame, frame);
-        climber.restore(state).unwrap();
+        throw(&mut climber, frame, frame);
         let body = climber.proxy_body(WORLD);
         let proxy =
             ClimberProxy::insert(&body, DVec3::ZERO, &mut world.bodies, &mut world.colliders);
@@ -56,6 +56,27 @@ impl Scene {
             proxy: Some(proxy),
             hit: None,
             frame,
+        }
+    }
+
+    /// A climber with every ability that stands on a floor.
+    pub(crate) fn standing(setting: Setting) -> Self {
+        let mut scene = Self::on_floor(setting);
+        scene.rest(0.5);
+        assert_eq!(scene.climber.state().mode, ClimberMode::Standing);
+        scene
+    }
+
+    /// A climber with every ability, just above a floor.
+    pub(crate) fn on_floor(setting: Setting) -> Self {
+        let config = ClimberConfig::colossus_climber();
+        Self::new(setting, config, DVec3::Y * 0.41).with_floor()
+    }
+
+    /// Ticks without input for some seconds of a body of size 1.
+    pub(crate) fn rest(&mut self, seconds: f64) {
+        for _ in 0..self.ticks(seconds) {
+            self.tick(&IDLE);
         }
     }
 
@@ -175,16 +196,23 @@ impl Scene {
     /// Sets a body's velocity in the frame.
     pub(crate) fn send(&mut self, body: RigidBodyHandle, velocity: DVec3) {
         let velocity = (self.frame + velocity).as_vec3();
-        self.world
-            .bodies
-            .get_mut(body)
-            .unwrap()
-            .set_linvel(velocity, true);
+        self.world.bodies[body].set_linvel(velocity, true);
     }
 
     /// The climber's velocity in the frame.
     pub(crate) fn own(&self) -> DVec3 {
         self.climber.state().velocity - self.frame
+    }
+
+    /// A place relative to the climber, in sizes.
+    pub(crate) fn beside(&self, offset: DVec3) -> DVec3 {
+        self.climber.state().position / self.setting.0 + offset
+    }
+
+    /// Adds a cube above the climber that does not turn, by its sides and its height over the climber, in sizes.
+    pub(crate) fn drop_crate(&mut self, side: f64, height: f64, mass: f64) -> RigidBodyHandle {
+        let body = RigidBodyBuilder::dynamic().lock_rotations();
+        self.add(body, [side; 3], self.beside(DVec3::Y * height), mass)
     }
 
     /// A body's place relative to the climber, in sizes.

@@ -1,15 +1,16 @@
 //! Crates that fall on a climber on a creature's skin.
 
 use clamber_climber::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
-use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::rig::Palette;
+use clamber_surface::geometry::Similarity;
 use clamber_surface::surface::SkinnedSurface;
-use clamber_world::rapier3d::prelude::{RigidBodyBuilder, RigidBodyHandle};
 use clamber_world::{Obstacle, ObstacleId};
 use glam::{DQuat, DVec3, Vec3};
 
+use crate::cases::pairs;
+use crate::events::is_tumbled;
+use crate::input::{HOLD, IDLE};
 use crate::proxies::scene::{SETTINGS, Scene, Setting};
-use crate::scene::{FUR, HOLD, STONE, cuboid};
+use crate::scene::{FUR, STONE, cuboid, rest};
 
 /// Id of the creature as an obstacle.
 const CREATURE: ObstacleId = ObstacleId(3);
@@ -30,8 +31,7 @@ impl Ride {
             tick: 0,
         };
         let at = ride.at();
-        let rest = Palette::from_matrices([Affine::IDENTITY]);
-        ride.creature.place(&rest, at).unwrap();
+        ride.creature.place(&rest(), at).unwrap();
         ride
     }
 
@@ -49,80 +49,61 @@ impl Ride {
     fn tick(&mut self, input: &ClimberInput) -> Vec<ClimberEvent> {
         self.tick += 1;
         let at = self.at();
-        let rest = Palette::from_matrices([Affine::IDENTITY]);
-        self.creature.advance(&rest, at).unwrap();
+        self.creature.advance(&rest(), at).unwrap();
         let skin: &dyn Obstacle = &self.creature;
         self.scene.tick_with(input, &[(CREATURE, skin)]).events
-    }
-
-    /// A crate above the climber, in sizes.
-    fn drop(&mut self, height: f64, mass: f64) -> RigidBodyHandle {
-        let size = self.scene.setting.0;
-        let at = self.scene.climber.state().position / size + DVec3::Y * height;
-        let body = RigidBodyBuilder::dynamic().lock_rotations();
-        self.scene.add(body, [0.5; 3], at, mass)
     }
 }
 
 #[test]
 fn a_crate_rests_on_a_climber_on_a_back_or_knocks_it_down() {
-    for setting in SETTINGS {
-        for (mass, height, knocks) in [(10.0, 1.2, false), (80.0, 2.4, true)] {
-            let back = cuboid(Vec3::new(6.0, 1.0, 6.0), STONE);
-            let mut ride = Ride::new(setting, back, DVec3::Y * 1.42);
-            for _ in 0..ride.scene.ticks(0.5) {
-                ride.tick(&ClimberInput::IDLE);
-            }
-            assert_eq!(
-                ride.scene.climber.state().mode,
-                ClimberMode::Standing,
-                "{setting:?}"
-            );
-            let load = ride.drop(height, mass);
-            let mut events = Vec::new();
-            for tick in 0..ride.scene.ticks(2.5) {
-                events.extend(ride.tick(&ClimberInput::IDLE));
-                let above = ride.scene.above(load).y;
-                let told = format!("{setting:?}, {mass} kg, tick {tick}: {above} {events:?}");
-                assert!(above > 0.6, "{told}");
-            }
-            let tumbled = |event: &ClimberEvent| matches!(event, ClimberEvent::Tumbled { .. });
-            let told = format!("{setting:?}, {mass} kg: {events:?}");
-            assert_eq!(events.iter().any(tumbled), knocks, "{told}");
-            if !knocks {
-                let above = ride.scene.above(load).y;
-                assert!((above - 0.66).abs() < 0.02, "{told}: {above}");
-            }
+    let crates = [(10.0, 1.2, false), (80.0, 2.4, true)];
+    for (setting, (mass, height, knocks)) in pairs(SETTINGS, crates) {
+        let back = cuboid(Vec3::new(6.0, 1.0, 6.0), STONE);
+        let mut ride = Ride::new(setting, back, DVec3::Y * 1.42);
+        for _ in 0..ride.scene.ticks(0.5) {
+            ride.tick(&IDLE);
+        }
+        let mode = ride.scene.climber.state().mode;
+        assert_eq!(mode, ClimberMode::Standing, "{setting:?}");
+        let load = ride.scene.drop_crate(0.5, height, mass);
+        let mut events = Vec::new();
+        for tick in 0..ride.scene.ticks(2.5) {
+            events.extend(ride.tick(&IDLE));
+            let above = ride.scene.above(load).y;
+            let told = format!("{setting:?}, {mass} kg, tick {tick}: {above} {events:?}");
+            assert!(above > 0.6, "{told}");
+        }
+        let told = format!("{setting:?}, {mass} kg: {events:?}");
+        assert_eq!(events.iter().any(is_tumbled), knocks, "{told}");
+        if !knocks {
+            let above = ride.scene.above(load).y;
+            assert!((above - 0.66).abs() < 0.02, "{told}: {above}");
         }
     }
 }
 
 #[test]
 fn a_heavy_crate_knocks_a_climber_off_its_hold_and_a_light_one_does_not() {
-    for setting in SETTINGS {
-        for (mass, knocks) in [(4.0, false), (200.0, true)] {
-            let wall = cuboid(Vec3::new(4.0, 9.0, 3.0), FUR);
-            let mut ride = Ride::new(setting, wall, DVec3::new(0.0, 1.0, 3.5));
-            for _ in 0..ride.scene.ticks(0.5) {
-                ride.tick(&HOLD);
-            }
-            assert!(ride.scene.climber.state().mode.is_holding(), "{setting:?}");
-            let load = ride.drop(2.4, mass);
-            let mut events = Vec::new();
-            for tick in 0..ride.scene.ticks(1.0) {
-                events.extend(ride.tick(&HOLD));
-                let apart = ride.scene.above(load).length();
-                assert!(
-                    apart > 0.6,
-                    "{setting:?}, {mass} kg, tick {tick}: {apart} {events:?}"
-                );
-            }
-            let tumbled = |event: &ClimberEvent| matches!(event, ClimberEvent::Tumbled { .. });
-            let told = format!("{setting:?}, {mass} kg: {events:?}");
-            assert_eq!(events.iter().any(tumbled), knocks, "{told}");
-            if !knocks {
-                assert!(ride.scene.climber.state().mode.is_holding(), "{told}");
-            }
+    for (setting, (mass, knocks)) in pairs(SETTINGS, [(4.0, false), (200.0, true)]) {
+        let wall = cuboid(Vec3::new(4.0, 9.0, 3.0), FUR);
+        let mut ride = Ride::new(setting, wall, DVec3::new(0.0, 1.0, 3.5));
+        for _ in 0..ride.scene.ticks(0.5) {
+            ride.tick(&HOLD);
+        }
+        assert!(ride.scene.climber.state().mode.is_holding(), "{setting:?}");
+        let load = ride.scene.drop_crate(0.5, 2.4, mass);
+        let mut events = Vec::new();
+        for tick in 0..ride.scene.ticks(1.0) {
+            events.extend(ride.tick(&HOLD));
+            let apart = ride.scene.above(load).length();
+            let told = format!("{setting:?}, {mass} kg, tick {tick}: {apart} {events:?}");
+            assert!(apart > 0.6, "{told}");
+        }
+        let told = format!("{setting:?}, {mass} kg: {events:?}");
+        assert_eq!(events.iter().any(is_tumbled), knocks, "{told}");
+        if !knocks {
+            assert!(ride.scene.climber.state().mode.is_holding(), "{told}");
         }
     }
 }

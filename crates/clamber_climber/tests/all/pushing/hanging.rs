@@ -6,19 +6,13 @@ use clamber_world::rapier3d::prelude::{
 };
 use glam::DVec3;
 
-use crate::pushing::scene::{FUR, Scene, cuboid};
-
-/// Mass of the climber, kg.
-const MASS: f64 = 80.0;
+use crate::cases::{pairs, triples};
+use crate::input::HOLD;
+use crate::pushing::scene::{FUR, MASS, Scene, cuboid};
+use crate::stage::tireless;
 
 /// Gravity, metres a second squared.
 const GRAVITY: f64 = 9.81;
-
-/// Input that only holds the grip.
-const HOLD: ClimberInput = ClimberInput {
-    grip: true,
-    ..ClimberInput::IDLE
-};
 
 /// Size, rate, and the mass of the climber as a multiple of the body's.
 const CASES: [(f64, f64, f64); 19] = [
@@ -45,10 +39,7 @@ const CASES: [(f64, f64, f64); 19] = [
 
 /// A climber that never tires. If it `hangs`, it hangs from any surface as steep as a wall.
 fn climber(hangs: bool) -> ClimberConfig {
-    let mut config = ClimberConfig {
-        stamina: None,
-        ..ClimberConfig::colossus_climber()
-    };
+    let mut config = tireless();
     let grip = config.grip.as_mut().unwrap();
     if hangs {
         grip.max_overhang = 0.5;
@@ -84,30 +75,25 @@ fn energies(scene: &Scene, body: RigidBodyHandle, size: f64) -> (f64, f64) {
 
 #[test]
 fn who_holds_a_body_that_falls_falls_as_gravity_lets_both() {
-    for hangs in [false, true] {
-        for case in CASES {
-            for turns in [false, true] {
-                // A light body that turns about the hands of a climber is faster than a common fall.
-                if turns && hangs {
-                    continue;
-                }
-                let body = RigidBodyBuilder::dynamic();
-                let body = if turns { body } else { body.lock_rotations() };
-                let (mut scene, body) = beside_a_box(hangs, case, body);
-                let (size, rate, _) = case;
-                let mut seconds = 0.0;
-                for _ in 0..rate as u32 {
-                    scene.tick(&HOLD);
-                    seconds += 1.0 / rate;
-                    let state = scene.climber.state();
-                    let told = format!("hangs {hangs}, {case:?}, turns {turns}, {seconds} s");
-                    assert!(state.mode.is_holding(), "{told}: {state:?}");
-                    let [own, bodys] =
-                        [state.velocity, scene.velocity(body)].map(|v| v.length() / size);
-                    let most = GRAVITY * (1.05 * seconds + 3.0 / rate) + 0.5;
-                    assert!(own.max(bodys) < most, "{told}: {own} and {bodys} m/s");
-                }
-            }
+    for (hangs, case, turns) in triples([false, true], CASES, [false, true]) {
+        // A light body that turns about the hands of a climber is faster than a common fall.
+        if turns && hangs {
+            continue;
+        }
+        let body = RigidBodyBuilder::dynamic();
+        let body = if turns { body } else { body.lock_rotations() };
+        let (mut scene, body) = beside_a_box(hangs, case, body);
+        let (size, rate, _) = case;
+        let mut seconds = 0.0;
+        for _ in 0..rate as u32 {
+            scene.tick(&HOLD);
+            seconds += 1.0 / rate;
+            let state = scene.climber.state();
+            let told = format!("hangs {hangs}, {case:?}, turns {turns}, {seconds} s");
+            assert!(state.mode.is_holding(), "{told}: {state:?}");
+            let [own, bodys] = [state.velocity, scene.velocity(body)].map(|v| v.length() / size);
+            let most = GRAVITY * (1.05 * seconds + 3.0 / rate) + 0.5;
+            assert!(own.max(bodys) < most, "{told}: {own} and {bodys} m/s");
         }
     }
 }
@@ -115,52 +101,50 @@ fn who_holds_a_body_that_falls_falls_as_gravity_lets_both() {
 /// The climber hangs from a body on a rope or from one that falls, and blows set it swinging.
 #[test]
 fn hanging_from_a_body_makes_no_energy() {
-    for (size, rate, ratio) in CASES {
-        for (roped, blows) in [(true, false), (true, true), (false, false)] {
-            let case = (size, rate, ratio);
-            let body = RigidBodyBuilder::dynamic().angular_damping(0.2);
-            let (mut scene, body) = beside_a_box(true, case, body);
-            if roped {
-                let up = Vector::new(0.0, (3.5 * size) as f32, 0.0);
-                let anchor = scene
-                    .world
-                    .insert_body(RigidBodyBuilder::fixed().translation(up));
-                let joint = SphericalJointBuilder::new().local_anchor2(up).build();
-                scene.world.insert_impulse_joint(anchor, body, joint);
-            }
-            let told = format!("{case:?}, roped {roped}, blows {blows}");
-            let (mut lowest, mut all, mut seen) = (f64::INFINITY, None, 0);
-            for tick in 0..(if roped { 6.0 } else { 1.0 } * rate) as u32 {
-                let struck = blows && tick % rate as u32 == rate as u32 / 2;
-                let blow = struck.then_some(Blow {
-                    velocity: DVec3::Z * (1.5 * size),
-                    damage: 0.0,
-                    by: None,
-                });
-                let before = scene.climber.state().velocity / size;
-                scene.tick(&ClimberInput { blow, ..HOLD });
-                match scene.climber.state().mode {
-                    ClimberMode::Hanging => {}
-                    _ if seen == 0 => continue,
-                    _ => break,
-                }
-                seen += 1;
-                let (moves, height) = energies(&scene, body, size);
-                let all = all.get_or_insert(moves + height);
-                if struck {
-                    let after = before + DVec3::Z * 1.5;
-                    *all +=
-                        0.5 * MASS * (after.length_squared() - before.length_squared()).max(0.0);
-                }
-                lowest = lowest.min(height);
-                // A few per cent of the energy from gravity so far, and of a fall of half a metre.
-                let slack = 0.06 * (*all - lowest) + 0.5 * MASS * GRAVITY;
-                assert!(
-                    moves + height < *all + slack,
-                    "{told}, tick {tick}: {moves} + {height} of {all} J"
-                );
-            }
-            assert!(seen > 5, "{told}: {seen}");
+    let plays = [(true, false), (true, true), (false, false)];
+    for ((size, rate, ratio), (roped, blows)) in pairs(CASES, plays) {
+        let case = (size, rate, ratio);
+        let body = RigidBodyBuilder::dynamic().angular_damping(0.2);
+        let (mut scene, body) = beside_a_box(true, case, body);
+        if roped {
+            let up = Vector::new(0.0, (3.5 * size) as f32, 0.0);
+            let anchor = scene
+                .world
+                .insert_body(RigidBodyBuilder::fixed().translation(up));
+            let joint = SphericalJointBuilder::new().local_anchor2(up).build();
+            scene.world.insert_impulse_joint(anchor, body, joint);
         }
+        let told = format!("{case:?}, roped {roped}, blows {blows}");
+        let (mut lowest, mut all, mut seen) = (f64::INFINITY, None, 0);
+        for tick in 0..(if roped { 6.0 } else { 1.0 } * rate) as u32 {
+            let struck = blows && tick % rate as u32 == rate as u32 / 2;
+            let blow = struck.then_some(Blow {
+                velocity: DVec3::Z * (1.5 * size),
+                damage: 0.0,
+                by: None,
+            });
+            let before = scene.climber.state().velocity / size;
+            scene.tick(&ClimberInput { blow, ..HOLD });
+            match scene.climber.state().mode {
+                ClimberMode::Hanging => {}
+                _ if seen == 0 => continue,
+                _ => break,
+            }
+            seen += 1;
+            let (moves, height) = energies(&scene, body, size);
+            let all = all.get_or_insert(moves + height);
+            if struck {
+                let after = before + DVec3::Z * 1.5;
+                *all += 0.5 * MASS * (after.length_squared() - before.length_squared()).max(0.0);
+            }
+            lowest = lowest.min(height);
+            // A few per cent of the energy from gravity so far, and of a fall of half a metre.
+            let slack = 0.06 * (*all - lowest) + 0.5 * MASS * GRAVITY;
+            assert!(
+                moves + height < *all + slack,
+                "{told}, tick {tick}: {moves} + {height} of {all} J"
+            );
+        }
+        assert!(seen > 5, "{told}: {seen}");
     }
 }

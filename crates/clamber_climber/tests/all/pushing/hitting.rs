@@ -1,23 +1,15 @@
 //! A climber in the air that hits bodies that can be pushed: both go on at one speed.
 
-use clamber_climber::{ClimberConfig, ClimberEvent, ClimberMode};
+use clamber_climber::{ClimberConfig, ClimberMode};
 use clamber_world::rapier3d::prelude::{
     ColliderBuilder, RigidBodyBuilder, RigidBodyHandle, Vector,
 };
 use glam::DVec3;
 
-use crate::pushing::scene::{IDLE, Scene, cuboid, walk};
-
-/// Mass of the climber, kg.
-const MASS: f64 = 80.0;
-
-fn v32(v: DVec3) -> Vector {
-    Vector::new(v.x as f32, v.y as f32, v.z as f32)
-}
-
-fn half(size: f64, x: f64, y: f64, z: f64) -> ColliderBuilder {
-    cuboid((x * size) as f32, (y * size) as f32, (z * size) as f32)
-}
+use crate::cases::WORLDS;
+use crate::events::{count, is_hurt};
+use crate::input::{IDLE, walk};
+use crate::pushing::scene::{MASS, Scene, boxed, cuboid};
 
 /// A body of two walls along X, 3.6 m apart, which moves with a frame.
 fn add_walls(scene: &mut Scene, size: f64, mass: f64, frame: DVec3) -> RigidBodyHandle {
@@ -26,10 +18,13 @@ fn add_walls(scene: &mut Scene, size: f64, mass: f64, frame: DVec3) -> RigidBody
         .can_sleep(false);
     let walls = [1.9, -1.9].map(|x| {
         let place = Vector::new((x * size) as f32, 0.0, 0.0);
-        (half(size, 0.1, 1.0, 2.0).translation(place), mass / 2.0)
+        (
+            boxed(DVec3::new(0.1, 1.0, 2.0) * size).translation(place),
+            mass / 2.0,
+        )
     });
     let handle = scene.add(body, walls);
-    scene.world.bodies[handle].set_linvel(v32(frame), true);
+    scene.set_velocity(handle, frame);
     handle
 }
 
@@ -55,10 +50,9 @@ fn who_flies_against_the_walls_of_its_box_keeps_the_momentum_of_both() {
         scene.throw(DVec3::X * speed, frame);
         let told = format!("size {size}, {rate} Hz, {mass} kg, frame {frame}");
         for tick in 0..(4.0 * rate) as u32 {
-            scene.step(&IDLE);
-            scene.apply();
+            scene.step_and_apply(&IDLE);
             let own = scene.climber.state().velocity.x;
-            let sum = scene.momentum(walls).x + MASS * own;
+            let sum = scene.momenta(&[walls]).x;
             let told = format!("{told}, tick {tick}: {sum} N s at {own} m/s");
             assert!((sum / (MASS * speed) - 1.0).abs() < 0.01, "{told}");
         }
@@ -69,43 +63,30 @@ fn who_flies_against_the_walls_of_its_box_keeps_the_momentum_of_both() {
 
 #[test]
 fn a_passenger_that_jumps_against_its_carts_walls_does_not_drive_it() {
-    for (size, rate) in [
-        (1.0, 30.0),
-        (1.0, 60.0),
-        (1.0, 240.0),
-        (0.02, 60.0),
-        (100.0, 60.0),
-    ] {
-        let mut scene = Scene::with(
-            ClimberConfig::walker(),
-            size,
-            1.0 / rate,
-            9.81,
-            DVec3::new(0.0, 0.65, 0.0),
-        );
+    for (size, rate) in WORLDS {
+        let (config, start) = (ClimberConfig::walker(), DVec3::Y * 0.65);
+        let mut scene = Scene::with(config, size, 1.0 / rate, 9.81, start);
         let body = RigidBodyBuilder::dynamic()
             .lock_rotations()
             .enabled_translations(true, false, false)
             .can_sleep(false);
         let wall = |x: f64| {
             let place = Vector::new((x * size) as f32, (2.0 * size) as f32, 0.0);
-            (half(size, 0.1, 2.0, 2.0).translation(place), 5.0)
+            (
+                boxed(DVec3::new(0.1, 2.0, 2.0) * size).translation(place),
+                5.0,
+            )
         };
-        let deck = (half(size, 2.0, 0.25, 2.0), 40.0);
+        let deck = (boxed(DVec3::new(2.0, 0.25, 2.0) * size), 40.0);
         let cart = scene.add(body, [deck, wall(1.9), wall(-1.9)]);
         let (mut last, mut most) = (0.0f64, 0.0f64);
         for tick in 0..(6.0 * rate) as u32 {
-            let ahead = if f64::from(tick) / rate % 2.0 < 1.0 {
-                1.0
-            } else {
-                -1.0
-            };
-            let mut input = walk(DVec3::X * ahead);
+            let is_ahead = f64::from(tick) / rate % 2.0 < 1.0;
+            let mut input = walk(if is_ahead { DVec3::X } else { DVec3::NEG_X });
             input.jump = tick % (rate as u32 / 2) == 3;
-            scene.step(&input);
-            scene.apply();
+            scene.step_and_apply(&input);
             // The reaction to a start on the deck shows a tick later.
-            let sum = (scene.momentum(cart).x + MASS * scene.climber.state().velocity.x) / size;
+            let sum = scene.momenta(&[cart]).x / size;
             most = most.max(sum.abs().min(last));
             last = sum.abs();
         }
@@ -127,17 +108,12 @@ fn a_light_ball_from_below_does_not_carry_a_climber_up() {
         (1.0, 60.0, 0.1, 60.0),
         (1.0, 60.0, 40.0, 10.0),
     ] {
-        let mut scene = Scene::with(
-            ClimberConfig::walker(),
-            size,
-            1.0 / rate,
-            9.81,
-            DVec3::Y * 10.0,
-        );
-        let body = RigidBodyBuilder::dynamic().translation(v32(DVec3::Y * (8.0 * size)));
+        let (config, start) = (ClimberConfig::walker(), DVec3::Y * 10.0);
+        let mut scene = Scene::with(config, size, 1.0 / rate, 9.81, start);
+        let body = RigidBodyBuilder::dynamic().translation((DVec3::Y * (8.0 * size)).as_vec3());
         let ball = ColliderBuilder::ball((0.2 * size) as f32).friction(0.0);
         let ball = scene.add(body, [(ball, mass)]);
-        scene.world.bodies[ball].set_linvel(v32(DVec3::Y * (speed * size)), true);
+        scene.set_velocity(ball, DVec3::Y * (speed * size));
         let mut most = 0.0f64;
         for _ in 0..(0.3 * rate) as u32 {
             scene.tick(&IDLE);
@@ -177,8 +153,7 @@ fn a_light_crate_before_a_wall_stops_a_flight_and_hurts_once() {
             let report = scene.tick(&IDLE);
             hits += u32::from(scene.climber.state().velocity.x > 0.2 * speed && hits > 0);
             hits += u32::from(!report.pushes.is_empty() && hits == 0);
-            let hurt = |event: &&ClimberEvent| matches!(event, ClimberEvent::Hurt { .. });
-            hurts += report.events.iter().filter(hurt).count();
+            hurts += count(&report.events, is_hurt);
         }
         let state = scene.climber.state();
         let told = format!("{rate} Hz, {mass} kg: {hits} {hurts} {state:?}");

@@ -3,13 +3,12 @@
 use clamber_climber::{
     ClimberConfig, ClimberEvent, ClimberInput, ContactQuery, ContactRule, StepRules,
 };
-use clamber_world::rapier3d::prelude::{RigidBodyBuilder, RigidBodyHandle, Vector};
+use clamber_world::rapier3d::prelude::{RigidBodyBuilder, RigidBodyHandle};
 use glam::DVec3;
 
-use crate::pushing::scene::{IDLE, Scene, cuboid, walk};
-
-/// Mass of the climber, kg.
-const MASS: f64 = 80.0;
+use crate::cases::pairs;
+use crate::input::{IDLE, walk};
+use crate::pushing::scene::{MASS, Scene, boxed};
 
 /// Half lengths of the body that the climber stands on, metres.
 const FLOE: DVec3 = DVec3::new(30.0, 0.25, 9.0);
@@ -25,10 +24,6 @@ const WORLDS: [(f64, f64); 5] = [
 
 type Rule = dyn Fn(&ContactQuery<'_>) -> ContactRule;
 
-fn v32(v: DVec3) -> Vector {
-    v.as_vec3()
-}
-
 /// A scene with a climber at a velocity that comes down to height 0.
 fn scene(size: f64, rate: f64, at: DVec3, velocity: DVec3) -> Scene {
     let config = ClimberConfig::walker();
@@ -40,27 +35,20 @@ fn scene(size: f64, rate: f64, at: DVec3, velocity: DVec3) -> Scene {
 /// A box that moves along X and Z without turning.
 fn add(scene: &mut Scene, size: f64, place: DVec3, half: DVec3, mass: f64) -> RigidBodyHandle {
     let body = RigidBodyBuilder::dynamic()
-        .translation(v32(place * size))
+        .translation((place * size).as_vec3())
         .enabled_translations(true, false, true)
         .lock_rotations()
         .can_sleep(false);
-    let half = v32(half * size);
-    scene.add(body, [(cuboid(half.x, half.y, half.z), mass)])
+    scene.add(body, [(boxed(half * size), mass)])
+}
+
+fn add_fixed(scene: &mut Scene, size: f64, place: DVec3, half: DVec3) {
+    let collider = boxed(half * size).translation((place * size).as_vec3());
+    scene.world.insert_collider(collider, None);
 }
 
 fn add_floor(scene: &mut Scene, size: f64) {
-    let half = v32(FLOE * size);
-    let floor = cuboid(half.x, half.y, half.z);
-    let floor = floor.translation(v32(DVec3::NEG_Y * (0.25 * size)));
-    scene.world.insert_collider(floor, None);
-}
-
-fn momentum(scene: &Scene, bodies: &[RigidBodyHandle]) -> f64 {
-    let own = scene.climber.state().velocity.x * MASS;
-    own + bodies
-        .iter()
-        .map(|body| scene.momentum(*body).x)
-        .sum::<f64>()
+    add_fixed(scene, size, DVec3::NEG_Y * 0.25, FLOE);
 }
 
 fn tick(scene: &mut Scene, input: &ClimberInput, rule: &Rule) {
@@ -92,7 +80,7 @@ fn walking_and_sliding_on_a_floe_keep_the_momentum_of_both() {
                         IDLE
                     };
                     tick(&mut scene, &input, &rule);
-                    let off = momentum(&scene, &[floe]) - had;
+                    let off = scene.momenta(&[floe]).x - had;
                     let told = format!(
                         "size {size}, {rate} Hz, {mass} kg, friction {friction}, {speed} m/s at {time} s"
                     );
@@ -129,15 +117,12 @@ fn a_collision_on_a_floe_is_none_of_the_floes() {
             if is_crate {
                 bodies.push(add(&mut scene, size, place, half, crate_mass));
             } else {
-                let half = v32(half * size);
-                let pier = cuboid(half.x, half.y, half.z).translation(v32(place * size));
-                scene.world.insert_collider(pier, None);
+                add_fixed(&mut scene, size, place, half);
             }
             if speed == 0.0 {
-                let body = &mut scene.world.bodies[bodies[1]];
-                body.set_linvel(v32(DVec3::NEG_X * (3.0 * size)), true);
+                scene.set_velocity(bodies[1], DVec3::NEG_X * (3.0 * size));
             }
-            let had = momentum(&scene, &bodies);
+            let had = scene.momenta(&bodies).x;
             for _ in 0..(2.0 * rate) as u32 {
                 tick(&mut scene, &IDLE, &rule);
             }
@@ -145,7 +130,7 @@ fn a_collision_on_a_floe_is_none_of_the_floes() {
             scene.assert_standing(&told);
             let floe = scene.velocity(floe).x / size;
             assert!(floe.abs() < 0.01, "{told}: the floe goes at {floe} m/s");
-            let off = momentum(&scene, &bodies) - had;
+            let off = scene.momenta(&bodies).x - had;
             assert!(
                 !is_crate || off.abs() < 0.01 * MASS * 3.0 * size,
                 "{told}: {off}"
@@ -171,10 +156,7 @@ fn a_light_box_before_a_wall_stops_who_slides() {
             add_floor(&mut scene, size);
             let half = DVec3::new(0.5, 0.6, 0.5);
             add(&mut scene, size, DVec3::new(1.5, 0.7, 0.0), half, mass);
-            let wall = v32(half * size);
-            let wall =
-                cuboid(wall.x, wall.y, wall.z).translation(v32(DVec3::new(2.5, 0.7, 0.0) * size));
-            scene.world.insert_collider(wall, None);
+            add_fixed(&mut scene, size, DVec3::new(2.5, 0.7, 0.0), half);
             let rule = move |query: &ContactQuery<'_>| query.usual().with_friction(friction);
             let input = if speed == 0.0 { walk(DVec3::X) } else { IDLE };
             for _ in 0..(1.5 * rate) as u32 {
@@ -195,23 +177,16 @@ fn who_walks_from_a_cart_onto_ice_slides_on() {
     for (size, rate) in WORLDS {
         let mut scene = scene(size, rate, DVec3::new(-4.0, 0.45, 0.0), DVec3::X * 5.0);
         let body = RigidBodyBuilder::kinematic_velocity_based()
-            .translation(v32(DVec3::new(-5.0, -0.25, 0.0) * size))
+            .translation((DVec3::new(-5.0, -0.25, 0.0) * size).as_vec3())
             .can_sleep(false);
-        let half = v32(DVec3::new(4.0, 0.25, 2.0) * size);
         // The cart goes on above the ice, whose top is a centimetre lower.
-        let cart = scene.add(body, [(cuboid(half.x, half.y, half.z), 1.0)]);
-        scene.world.bodies[cart].set_linvel(v32(DVec3::X * (5.0 * size)), true);
-        let half = v32(DVec3::new(25.0, 0.25, 9.0) * size);
-        let low = v32(DVec3::new(26.0, -0.26, 0.0) * size);
-        let floor = cuboid(half.x, half.y, half.z).translation(low);
-        scene.world.insert_collider(floor, None);
+        let cart = scene.add(body, [(boxed(DVec3::new(4.0, 0.25, 2.0) * size), 1.0)]);
+        scene.set_velocity(cart, DVec3::X * (5.0 * size));
+        let half = DVec3::new(25.0, 0.25, 9.0);
+        add_fixed(&mut scene, size, DVec3::new(26.0, -0.26, 0.0), half);
         let ice = move |query: &ContactQuery<'_>| {
-            let friction = if query.contact.point.y < -0.005 * size {
-                0.0
-            } else {
-                1.0
-            };
-            query.usual().with_friction(friction)
+            let is_ice = query.contact.point.y < -0.005 * size;
+            query.usual().with_friction(if is_ice { 0.0 } else { 1.0 })
         };
         let (mut on_ice, mut slowest) = (0, f64::INFINITY);
         for _ in 0..(1.6 * rate) as u32 {
@@ -231,22 +206,20 @@ fn who_walks_from_a_cart_onto_ice_slides_on() {
 #[test]
 fn who_slides_on_ice_into_a_crate_shares_its_momentum() {
     let rule = |query: &ContactQuery<'_>| query.usual().with_friction(0.0);
-    for (size, rate) in WORLDS {
-        for mass in [1.0, 20.0, 80.0, 400.0] {
-            let mut scene = scene(size, rate, DVec3::Y * 0.405, DVec3::X * 2.9);
-            add_floor(&mut scene, size);
-            let (place, half) = (DVec3::new(2.0, 0.45, 0.0), DVec3::splat(0.4));
-            let bodies = [add(&mut scene, size, place, half, mass)];
-            for count in 0..(3.0 * rate) as u32 {
-                tick(&mut scene, &IDLE, &rule);
-                let has = momentum(&scene, &bodies) / (MASS * 2.9 * size);
-                let told = format!("size {size}, {rate} Hz, {mass} kg, tick {count}: {has}");
-                assert!((has - 1.0).abs() < 0.01, "{told}");
-            }
-            let apart = scene.velocity(bodies[0]).x - scene.climber.state().velocity.x;
-            scene.assert_standing(&format!("size {size}, {rate} Hz, {mass} kg"));
-            assert!(apart.abs() < 0.02 * size, "{mass} kg: {apart} m/s apart");
+    for ((size, rate), mass) in pairs(WORLDS, [1.0, 20.0, 80.0, 400.0]) {
+        let mut scene = scene(size, rate, DVec3::Y * 0.405, DVec3::X * 2.9);
+        add_floor(&mut scene, size);
+        let (place, half) = (DVec3::new(2.0, 0.45, 0.0), DVec3::splat(0.4));
+        let bodies = [add(&mut scene, size, place, half, mass)];
+        for count in 0..(3.0 * rate) as u32 {
+            tick(&mut scene, &IDLE, &rule);
+            let has = scene.momenta(&bodies).x / (MASS * 2.9 * size);
+            let told = format!("size {size}, {rate} Hz, {mass} kg, tick {count}: {has}");
+            assert!((has - 1.0).abs() < 0.01, "{told}");
         }
+        let apart = scene.velocity(bodies[0]).x - scene.climber.state().velocity.x;
+        scene.assert_standing(&format!("size {size}, {rate} Hz, {mass} kg"));
+        assert!(apart.abs() < 0.02 * size, "{mass} kg: {apart} m/s apart");
     }
 }
 
@@ -257,21 +230,19 @@ fn who_slides_on_ice_that_tilts_keeps_its_speed() {
     for (size, rate) in WORLDS {
         let mut scene = scene(size, rate, DVec3::new(-4.0, 0.405, 0.0), DVec3::X * 6.0);
         let plate = RigidBodyBuilder::kinematic_velocity_based().can_sleep(false);
-        let half = v32(FLOE * size);
-        let collider = cuboid(half.x, half.y, half.z);
-        let collider = collider.translation(v32(DVec3::NEG_Y * (0.25 * size)));
+        let low = DVec3::NEG_Y * (0.25 * size);
+        let collider = boxed(FLOE * size).translation(low.as_vec3());
         let plate = scene.world.insert_body(plate);
         scene.world.insert_collider(collider, Some(plate));
         scene.world.detect_collisions(&(), &());
         let mut slipped = false;
         for count in 0..(1.5 * rate) as u32 {
             if f64::from(count) > 0.3 * rate {
-                scene.world.bodies[plate].set_angvel(v32(DVec3::X * 2.0), true);
+                scene.world.bodies[plate].set_angvel((DVec3::X * 2.0).as_vec3(), true);
             }
             let before = scene.climber.state().velocity;
             let report = scene.step_by(&IDLE, &StepRules::by(&rule));
-            let slips = |event: &ClimberEvent| matches!(event, ClimberEvent::Slipped);
-            if report.events.iter().any(slips) {
+            if report.events.contains(&ClimberEvent::Slipped) {
                 let lost = (scene.climber.state().velocity - before).length() / size;
                 let told = format!("size {size}, {rate} Hz: {lost} m/s");
                 assert!(lost < 0.5 + 2.0 * 9.81 / rate, "{told}");

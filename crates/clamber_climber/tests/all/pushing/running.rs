@@ -5,7 +5,10 @@ use clamber_world::rapier3d::prelude::{RigidBodyBuilder, RigidBodyHandle, Vector
 use clamber_world::{BodyPoses, Obstacle, ObstacleId, RapierTerrain};
 use glam::DVec3;
 
-use crate::pushing::scene::{DT, IDLE, Scene, cuboid, sum, walk};
+use crate::cases::triples;
+use crate::input::{IDLE, walk};
+use crate::pushing::scene::{Scene, cuboid, sum};
+use crate::scene::DT;
 
 /// Largest force with which the climber pushes, newtons.
 const FORCE: f64 = 600.0;
@@ -122,7 +125,7 @@ fn pushes_beside_a_step(frame: DVec3, rise: f32, low: f32, beside: f32) -> Vec<D
     let hangs = RigidBodyBuilder::dynamic().translation(at);
     let hangs = scene.add(hangs, [(cuboid(9.0, 2.0, 2.0), 1.0)]);
     for body in [floors, hangs] {
-        scene.world.bodies[body].set_linvel(frame.as_vec3(), true);
+        scene.set_velocity(body, frame);
     }
     scene.throw(DVec3::ZERO, frame);
     let pushes = (0..40).map(|_| {
@@ -137,20 +140,16 @@ fn pushes_beside_a_step(frame: DVec3, rise: f32, low: f32, beside: f32) -> Vec<D
 #[test]
 fn pushes_beside_a_step_are_the_same_in_every_frame() {
     let mut given = 0;
-    for rise in [0.15, 0.2, 0.3] {
-        for low in 0..10 {
-            for beside in 0..10 {
-                let (low, beside) = (0.5 + 0.06 * low as f32, 0.04 * beside as f32);
-                let at_rest = pushes_beside_a_step(DVec3::ZERO, rise, low, beside);
-                given += at_rest.iter().filter(|push| push.length() > 0.1).count();
-                for frame in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z, DVec3::Y] {
-                    let moving = pushes_beside_a_step(frame * 30.0, rise, low, beside);
-                    for (tick, (push, other)) in at_rest.iter().zip(&moving).enumerate() {
-                        let told = format!("{rise} m, {low} m, {beside} m, {frame}, tick {tick}");
-                        let off = push.distance(*other);
-                        assert!(off < 0.05, "{told}: {push}, {other}");
-                    }
-                }
+    for (rise, low, beside) in triples([0.15, 0.2, 0.3], 0..10, 0..10) {
+        let (low, beside) = (0.5 + 0.06 * low as f32, 0.04 * beside as f32);
+        let at_rest = pushes_beside_a_step(DVec3::ZERO, rise, low, beside);
+        given += at_rest.iter().filter(|push| push.length() > 0.1).count();
+        for frame in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z, DVec3::Y] {
+            let moving = pushes_beside_a_step(frame * 30.0, rise, low, beside);
+            for (tick, (push, other)) in at_rest.iter().zip(&moving).enumerate() {
+                let told = format!("{rise} m, {low} m, {beside} m, {frame}, tick {tick}");
+                let off = push.distance(*other);
+                assert!(off < 0.05, "{told}: {push}, {other}");
             }
         }
     }

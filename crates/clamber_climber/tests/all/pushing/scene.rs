@@ -12,22 +12,13 @@ use clamber_world::{BodyPoses, ObstacleId, RapierTerrain, SurfaceKind, SurfaceTa
 use glam::DVec3;
 
 use crate::numbers::in_world_of_size;
+use crate::scene::DT;
 
-/// Length of a tick, seconds.
-pub(crate) const DT: f64 = 1.0 / 60.0;
+/// Mass of the climber, kg.
+pub(crate) const MASS: f64 = 80.0;
 
 /// The user data of colliders with fur.
 pub(crate) const FUR: u128 = 1;
-
-/// No input.
-pub(crate) const IDLE: ClimberInput = ClimberInput::IDLE;
-
-pub(crate) fn walk(direction: DVec3) -> ClimberInput {
-    ClimberInput {
-        walk: direction,
-        ..IDLE
-    }
-}
 
 /// A world without friction, and a climber of 80 kg that walks at 3 m/s and pushes with up to 600 N.
 pub(crate) struct Scene {
@@ -108,6 +99,20 @@ impl Scene {
         self.step(input)
     }
 
+    /// Ticks with the same input.
+    pub(crate) fn ticks(&mut self, count: u32, input: &ClimberInput) {
+        for _ in 0..count {
+            self.tick(input);
+        }
+    }
+
+    /// Steps, and applies the pushes at once.
+    pub(crate) fn step_and_apply(&mut self, input: &ClimberInput) -> StepReport {
+        let report = self.step(input);
+        self.apply();
+        report
+    }
+
     pub(crate) fn apply(&mut self) {
         for push in self.pushes.drain(..) {
             let world = &mut self.world;
@@ -148,6 +153,16 @@ impl Scene {
         (body.linvel() * body.mass()).as_dvec3()
     }
 
+    /// Momentum of some bodies and the climber.
+    pub(crate) fn momenta(&self, bodies: &[RigidBodyHandle]) -> DVec3 {
+        let of_bodies: DVec3 = bodies.iter().map(|body| self.momentum(*body)).sum();
+        of_bodies + self.climber.state().velocity * MASS
+    }
+
+    pub(crate) fn set_velocity(&mut self, body: RigidBodyHandle, velocity: DVec3) {
+        self.world.bodies[body].set_linvel(velocity.as_vec3(), true);
+    }
+
     pub(crate) fn velocity(&self, body: RigidBodyHandle) -> DVec3 {
         self.world.bodies[body].linvel().as_dvec3()
     }
@@ -165,6 +180,12 @@ impl Scene {
 /// A cuboid by its half extents, without friction.
 pub(crate) fn cuboid(x: f32, y: f32, z: f32) -> ColliderBuilder {
     ColliderBuilder::cuboid(x, y, z).friction(0.0)
+}
+
+/// A [`cuboid`] by a vector.
+pub(crate) fn boxed(half: DVec3) -> ColliderBuilder {
+    let half = half.as_vec3();
+    cuboid(half.x, half.y, half.z)
 }
 
 /// The sum of all impulses.

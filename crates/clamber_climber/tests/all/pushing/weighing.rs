@@ -6,10 +6,9 @@ use clamber_world::rapier3d::prelude::{
 };
 use glam::DVec3;
 
-use crate::pushing::scene::{DT, IDLE, Scene, cuboid, landing_speed, sum, walk};
-
-/// Mass of the climber, kg.
-const MASS: f64 = 80.0;
+use crate::input::{IDLE, walk};
+use crate::pushing::scene::{MASS, Scene, cuboid, landing_speed, sum};
+use crate::scene::DT;
 
 /// Weight of the climber, newtons.
 const WEIGHT: f64 = MASS * 9.81;
@@ -43,9 +42,7 @@ fn above_a_raft(height: f64, mass: f64) -> (Scene, RigidBodyHandle) {
 fn a_raft_gets_the_climbers_weight_every_tick_standing_or_walking() {
     for (name, input) in WAYS {
         let (mut scene, raft) = above_a_raft(0.01, 4_000.0);
-        for tick in 0..30 {
-            scene.tick(&still(tick));
-        }
+        scene.ticks(30, &IDLE);
         scene.assert_standing(name);
         for tick in 0..300 {
             let before = scene.momentum(raft);
@@ -168,9 +165,7 @@ fn a_plank_on_a_pivot_tips_to_the_climbers_side() {
         let plank = scene.add(body, [(cuboid(2.0, 0.1, 1.0), 500.0)]);
         let hinge = RevoluteJointBuilder::new(Vector::Z).local_anchor1(Vector::new(0.0, -0.1, 0.0));
         scene.world.insert_impulse_joint(post, plank, hinge);
-        for _ in 0..15 {
-            scene.tick(&IDLE);
-        }
+        scene.ticks(15, &IDLE);
         scene.assert_standing("on the plank");
         let spin = f64::from(scene.world.bodies[plank].angvel().z) * side;
         // Weight times arm over the plank's moment of inertia: about 1.7 rad/s after a second.

@@ -2,9 +2,10 @@
 
 pub(crate) mod scene;
 
-use clamber_climber::{Climber, ClimberEvent, ClimberMode, TRANSITIONS};
-
+use clamber_climber::{Climber, ClimberEvent, ClimberMode, ClimberState, TRANSITIONS};
 use scene::Scene;
+
+use crate::events::is_crushed;
 
 /// Statistics of the ticks of all runs.
 #[derive(Debug, Default)]
@@ -32,10 +33,8 @@ const ELSEWHERE: [(ClimberMode, ClimberMode); 6] = [
 ];
 
 fn index(mode: ClimberMode) -> usize {
-    ClimberMode::ALL
-        .iter()
-        .position(|other| *other == mode)
-        .unwrap()
+    let mut all = ClimberMode::ALL.iter();
+    all.position(|other| *other == mode).unwrap()
 }
 
 /// Plays random ticks. In a random tick, a second climber is restored from the first one's state; both must stay equal.
@@ -59,12 +58,8 @@ fn run(seed: u64, ticks: u32, seen: &mut Seen) {
         assert!((0.0..=1.0).contains(&state.stamina), "{}", told());
         assert!((0.0..=1.0).contains(&state.hit_points), "{}", told());
         assert!(state.velocity.length() < 300.0, "{}", told());
-        assert_eq!(
-            state.mode.is_supported(),
-            state.support.is_some(),
-            "{}",
-            told()
-        );
+        let is_supported = state.support.is_some();
+        assert_eq!(state.mode.is_supported(), is_supported, "{}", told());
         let mut mode = before.mode;
         for event in &report.events {
             if let ClimberEvent::Changed { from, to } = *event {
@@ -78,27 +73,20 @@ fn run(seed: u64, ticks: u32, seen: &mut Seen) {
         if let Some(twin) = &mut twin {
             let other = scene.step(twin, &input);
             assert_eq!(other, report, "{}", told());
-            assert_eq!(
-                twin.state().fingerprint(),
-                state.fingerprint(),
-                "{}",
-                told()
-            );
+            let [a, b] = [twin.state(), &state].map(ClimberState::fingerprint);
+            assert_eq!(a, b, "{}", told());
         }
         if tick == restored_at {
             let mut other = scene.climber();
             other.restore(state).unwrap();
             twin = Some(other);
         }
-        let is_crushed = report
-            .events
-            .iter()
-            .any(|event| matches!(event, ClimberEvent::Crushed { .. }));
+        let was_crushed = report.events.iter().any(is_crushed);
         seen.ticks += 1;
         seen.in_mode[index(state.mode)] += 1;
-        seen.crushed += u32::from(is_crushed);
+        seen.crushed += u32::from(was_crushed);
         seen.unclear += u32::from(!report.is_clear);
-        if !is_crushed && report.is_clear {
+        if !was_crushed && report.is_clear {
             let depth = scene.depth(&climber);
             seen.deepest = seen.deepest.max(depth);
             if depth > 1e-3 {

@@ -1,15 +1,14 @@
 use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, StepReport};
-use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
+use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId};
-use clamber_surface::rig::{Clip, Palette, Playback, Skeleton};
+use clamber_surface::rig::{Clip, Playback, Skeleton};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
 use crate::creature::{JOINTS, clip, ground, skeleton, tube};
-
-/// Length of a tick, seconds.
-const TICK: f64 = 1.0 / 60.0;
+use crate::input::IDLE;
+use crate::scene::{DT, rest};
 
 /// A tube that crawls over the ground, and a second one that flies around and into it.
 pub(crate) struct Scene {
@@ -49,9 +48,7 @@ impl Scene {
         }
         let mut floor = SkinnedSurface::new(ground());
         let under = Similarity::from_translation(DVec3::Y * -3.0);
-        floor
-            .place(&Palette::from_matrices([Affine::IDENTITY]), under)
-            .unwrap();
+        floor.place(&rest(), under).unwrap();
         let mut block = SkinnedSurface::new(ground());
         let steep = Similarity {
             rotation: rotation_from_axis_angle(DVec3::Z, 0.3 * (rng.f64() - 0.5)),
@@ -62,9 +59,7 @@ impl Scene {
                 4.0 * rng.f64() - 2.0,
             ),
         };
-        block
-            .place(&Palette::from_matrices([Affine::IDENTITY]), steep)
-            .unwrap();
+        block.place(&rest(), steep).unwrap();
         let mut config = match rng.u32(0..4) {
             0 => ClimberConfig::walker(),
             _ => ClimberConfig::colossus_climber(),
@@ -85,7 +80,7 @@ impl Scene {
             haste,
             config,
             start: DVec3::new(f64::from(JOINTS) * 0.9, 5.0, 0.2),
-            input: ClimberInput::default(),
+            input: IDLE,
         };
         if scene.rng.bool() {
             // The climber starts beside the table, about to catch its ledge.
@@ -102,7 +97,7 @@ impl Scene {
     }
 
     pub(crate) fn advance(&mut self) {
-        self.time += TICK;
+        self.time += DT;
         let is_placed = self.rng.u32(0..1000) == 0;
         if is_placed {
             self.time += 1.0;
@@ -185,7 +180,7 @@ impl Scene {
     }
 
     pub(crate) fn step(&self, climber: &mut Climber, input: &ClimberInput) -> StepReport {
-        climber.step(input, &self.obstacles(), TICK).unwrap()
+        climber.step(input, &self.obstacles(), DT).unwrap()
     }
 
     /// Depth of an obstacle in the climber's core, metres.

@@ -1,14 +1,12 @@
 //! Ledges that are followed to their end, over steps, across gaps and around corners, while the stick is held.
 
+use clamber_climber::ClimberInput;
 use clamber_climber::ClimberMode::LedgeHanging;
-use clamber_climber::{ClimberConfig, ClimberInput};
 use clamber_surface::geometry::Similarity;
 use glam::DVec3;
 
-use crate::stage::{IDLE, Played, Run, Shape, Stage, Trace, every, turned, within};
-
-/// Input that only holds the grip.
-const HOLD: ClimberInput = ClimberInput { grip: true, ..IDLE };
+use crate::input::{HOLD, grip_walk};
+use crate::stage::{Played, Run, Shape, Stage, Trace, every, tireless, turned, within};
 
 /// A scene with an edge at height 0. The climber hangs from it at the origin, facing -Z.
 struct Scene {
@@ -72,9 +70,9 @@ fn at(edge: DVec3, normal: DVec3) -> DVec3 {
 }
 
 fn ends() -> Vec<Scene> {
-    let stop = |name, walls, x: f64| Scene {
+    let stop = |name: &'static str, second: Shape, x: f64| Scene {
         name,
-        walls,
+        walls: vec![wall(-2.0, 1.0, 0.0, 0.0), second],
         stick: (DVec3::X * 2.0 - DVec3::Z * f64::from(u8::from(name.ends_with("well"))))
             .normalize(),
         seconds: 4.0,
@@ -85,32 +83,13 @@ fn ends() -> Vec<Scene> {
         rests: true,
         turns_back: 0,
     };
+    let name = "a higher wall, with the stick towards the wall as well";
     vec![
-        stop(
-            "a higher wall",
-            vec![wall(-2.0, 1.0, 0.0, 0.0), wall(1.0, 3.0, 0.6, 0.0)],
-            0.95,
-        ),
-        stop(
-            "a lower wall",
-            vec![wall(-2.0, 1.0, 0.0, 0.0), wall(1.0, 3.0, -0.4, 0.0)],
-            1.05,
-        ),
-        stop(
-            "a higher wall across",
-            vec![wall(-2.0, 1.0, 0.0, 0.0), wall(1.0, 3.0, 0.6, 2.0)],
-            0.6,
-        ),
-        stop(
-            "a gap wider than the reach",
-            vec![wall(-2.0, 1.0, 0.0, 0.0), wall(1.5, 3.0, 0.0, 0.0)],
-            1.25,
-        ),
-        stop(
-            "a higher wall, with the stick towards the wall as well",
-            vec![wall(-2.0, 1.0, 0.0, 0.0), wall(1.0, 3.0, 0.6, 0.0)],
-            0.95,
-        ),
+        stop("a higher wall", wall(1.0, 3.0, 0.6, 0.0), 0.95),
+        stop("a lower wall", wall(1.0, 3.0, -0.4, 0.0), 1.05),
+        stop("a higher wall across", wall(1.0, 3.0, 0.6, 2.0), 0.6),
+        stop("a gap wider than the reach", wall(1.5, 3.0, 0.0, 0.0), 1.25),
+        stop(name, wall(1.0, 3.0, 0.6, 0.0), 0.95),
     ]
 }
 
@@ -250,8 +229,7 @@ const RATES: [f64; 4] = [60.0, 30.0, 120.0, 240.0];
 
 /// A climber that hangs at the origin.
 fn hung(stage: Stage, yaw: &Similarity, case: &str) -> Run {
-    let mut config = ClimberConfig::colossus_climber();
-    config.stamina = None;
+    let mut config = tireless();
     config.grip = None;
     let start = yaw.rotation * DVec3::new(0.0, -0.5, 0.45) - DVec3::Y * RADIUS;
     let ticks = (1.0 / stage.dt).round() as u32;
@@ -259,11 +237,7 @@ fn hung(stage: Stage, yaw: &Similarity, case: &str) -> Run {
     let walk = yaw.rotation * DVec3::NEG_Z * 0.1;
     for _ in 0..ticks {
         let is_caught = run.mode() == LedgeHanging;
-        run.step(&if is_caught {
-            HOLD
-        } else {
-            ClimberInput { walk, ..HOLD }
-        });
+        run.step(&if is_caught { HOLD } else { grip_walk(walk) });
     }
     let off = run.position().distance(yaw.rotation * START);
     within!(off, 2e-3, "{case}: hangs at {}", run.position());
@@ -273,10 +247,8 @@ fn hung(stage: Stage, yaw: &Similarity, case: &str) -> Run {
 /// Plays a scene, turned about the vertical and mirrored, and checks every tick.
 fn play(scene: &Scene, played: Played, rate: f64, is_mirrored: bool, angle: f64) -> Trace {
     let dt = 1.0 / rate;
-    let case = format!(
-        "{played:?}, {}, {rate} Hz, mirrored: {is_mirrored}",
-        scene.name
-    );
+    let name = scene.name;
+    let case = format!("{played:?}, {name}, {rate} Hz, mirrored: {is_mirrored}");
     let yaw = turned(DVec3::Y, angle);
     let map = |v: DVec3| {
         let x = if is_mirrored { -v.x } else { v.x };
@@ -288,11 +260,7 @@ fn play(scene: &Scene, played: Played, rate: f64, is_mirrored: bool, angle: f64)
         for p in &mut shape.positions {
             *p = map(*p);
         }
-        if is_mirrored {
-            for triangle in &mut shape.triangles {
-                triangle.swap(1, 2);
-            }
-        }
+        let shape = if is_mirrored { shape.flipped() } else { shape };
         stage = stage.with_still(&shape);
     }
     let mut run = hung(stage, &yaw, &case);
@@ -302,28 +270,18 @@ fn play(scene: &Scene, played: Played, rate: f64, is_mirrored: bool, angle: f64)
     let ticks = (scene.seconds * rate).round() as u32;
     for tick in 0..ticks {
         run.step(&input);
-        let told = format!("{case}, tick {tick} at {}", run.position());
-        assert_eq!(run.mode(), LedgeHanging, "{told}");
         let way = run.position() - last;
-        within!(
-            way.length(),
-            DRAW * dt * (1.0 + 1e-9) + 1e-5,
-            "{told}: a step of {way}"
-        );
+        let told = format!("{case}, tick {tick} at {last}, then {way}");
+        assert_eq!(run.mode(), LedgeHanging, "{told}");
+        let longest = DRAW * dt * (1.0 + 1e-9) + 1e-5;
+        within!(way.length(), longest, "{told}: too far");
         let is_reversal = way.dot(last_way) < 0.0 && way.length().min(last_way.length()) > 1e-4;
         reversals += u32::from(is_reversal);
-        assert!(
-            reversals <= scene.turns_back,
-            "{told}: {last_way}, then {way}"
-        );
+        assert!(reversals <= scene.turns_back, "{told}, was {last_way}");
         let velocity = run.state().velocity;
         let off = velocity.distance(way / dt);
-        within!(
-            off,
-            0.05 * velocity.length() + 2e-2,
-            "{told}: velocity {velocity}, {}",
-            way / dt
-        );
+        let allowed = 0.05 * velocity.length() + 2e-2;
+        within!(off, allowed, "{told}: velocity {velocity}");
         (last, last_way) = (run.position(), way);
     }
     let (position, facing) = (map(scene.ends.0), map(scene.ends.1));
@@ -334,31 +292,18 @@ fn play(scene: &Scene, played: Played, rate: f64, is_mirrored: bool, angle: f64)
     } else {
         0.25
     };
-    within!(
-        off,
-        allowed,
-        "{case}: ends at {} instead of {position}",
-        run.position()
-    );
+    within!(off, allowed, "{case}: ends {off} m from {position}");
     if facing != DVec3::ZERO {
-        within!(
-            run.state().heading.distance(facing),
-            1e-3,
-            "{case}: faces {}",
-            run.state().heading
-        );
+        let heading = run.state().heading;
+        within!(heading.distance(facing), 1e-3, "{case}: faces {heading}");
     }
     if scene.rests {
         for _ in 0..ticks / 4 {
             run.step(&input);
             let told = format!("{case}: at rest at {}", run.position());
             within!(run.position().distance(last), 1e-4, "{told}, was {last}");
-            within!(
-                run.state().velocity.length(),
-                1e-4,
-                "{told}: {}",
-                run.state().velocity
-            );
+            let velocity = run.state().velocity;
+            within!(velocity.length(), 1e-4, "{told}: {velocity}");
         }
     }
     // The climber goes back the same way, and rests where it is once the stick is released.
@@ -366,17 +311,10 @@ fn play(scene: &Scene, played: Played, rate: f64, is_mirrored: bool, angle: f64)
     let rest = run.position();
     for _ in 0..(0.5 * rate) as u32 {
         run.step(&HOLD);
-        within!(
-            run.position().distance(rest),
-            1e-4,
-            "{case}: rests at {rest}"
-        );
-        within!(
-            run.state().velocity.length(),
-            1e-4,
-            "{case}: {}",
-            run.state().velocity
-        );
+        let off = run.position().distance(rest);
+        within!(off, 1e-4, "{case}: rests at {rest}");
+        let velocity = run.state().velocity;
+        within!(velocity.length(), 1e-4, "{case}: {velocity}");
     }
     run.sound()
 }

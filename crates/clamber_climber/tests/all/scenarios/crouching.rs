@@ -4,7 +4,8 @@ use clamber_climber::ClimberMode::Standing;
 use clamber_climber::{ClimberConfig, ClimberError, ClimberInput};
 use glam::DVec3;
 
-use crate::stage::{IDLE, Played, Run, Shape, Stage, every, walk, within};
+use crate::input::{IDLE, walk};
+use crate::stage::{Played, Run, Shape, Stage, every, within};
 
 /// Height of the second ball above the first, metres: the body is 1.6 m tall.
 const HEIGHT: f64 = 0.8;
@@ -21,7 +22,7 @@ fn room(played: Played, rate: f64, ceiling: f64) -> Stage {
         DVec3::new(-3.0, ceiling, 2.0),
         DVec3::new(3.0, ceiling + 0.5, 6.0),
     );
-    Stage::at(played, 1.0 / rate, DVec3::ZERO)
+    Stage::at_rate(played, rate)
         .with_still(&Shape::boxed(
             DVec3::new(-9.0, -1.0, -9.0),
             DVec3::new(9.0, 0.0, 19.0),

@@ -1,10 +1,13 @@
 //! Stepping off an edge with the grip held: the climber turns round and hangs from the edge.
 
+use clamber_climber::ClimberInput;
 use clamber_climber::ClimberMode::{LedgeHanging, Standing};
-use clamber_climber::{ClimberConfig, ClimberEvent, ClimberInput};
 use glam::DVec3;
 
-use crate::stage::{IDLE, Played, Run, Shape, Stage, Trace, every, turned, within};
+use crate::cases::pairs;
+use crate::events::{count, is_caught};
+use crate::input::{HOLD, IDLE, grip_walk};
+use crate::stage::{Played, Run, Shape, Stage, Trace, every, tireless, turned, within};
 
 /// Radius of the body, metres.
 const RADIUS: f64 = 0.4;
@@ -62,8 +65,7 @@ fn ways() -> Vec<Way> {
 
 /// A climber that stands a metre behind the edge.
 fn standing(stage: Stage, way: &Way) -> Run {
-    let mut config = ClimberConfig::colossus_climber();
-    config.stamina = None;
+    let mut config = tireless();
     config.grip = None;
     config.body.height = way.height;
     let feet = turned(DVec3::Y, way.angle).rotation * DVec3::new(0.0, 0.0, -1.0);
@@ -72,7 +74,7 @@ fn standing(stage: Stage, way: &Way) -> Run {
 
 fn stage(played: Played, way: &Way, shapes: &[Shape]) -> Stage {
     let pose = turned(DVec3::Y, way.angle);
-    let stage = Stage::at(played, 1.0 / way.rate, DVec3::ZERO);
+    let stage = Stage::at_rate(played, way.rate);
     let shapes = shapes.iter();
     shapes.fold(stage, |stage, shape| {
         stage.with_still(&shape.clone().placed(&pose))
@@ -96,14 +98,9 @@ fn hangs_and_rests(played: Played, way: &Way, shapes: &[Shape]) -> Trace {
     let mut run = standing(stage(played, way, shapes), way);
     let hung = hangs(&mut run, way, true);
     assert!(hung, "{case}: {:?} at {}", run.mode(), run.position());
-    let caught = |event: &&ClimberEvent| matches!(event, ClimberEvent::LedgeCaught { .. });
-    assert_eq!(run.trace.events.iter().filter(caught).count(), 1, "{case}");
+    assert_eq!(count(&run.trace.events, is_caught), 1, "{case}");
     let dt = 1.0 / way.rate;
-    let input = ClimberInput {
-        walk: yaw * way.stick,
-        grip: true,
-        ..IDLE
-    };
+    let input = grip_walk(yaw * way.stick);
     // With the stick held, the climber moves down to its place, no faster than arms draw, and along the ledge if the
     // stick is oblique.
     let mut last = run.position();
@@ -115,8 +112,7 @@ fn hangs_and_rests(played: Played, way: &Way, shapes: &[Shape]) -> Trace {
         within!(made, DRAW * dt * 1.2 + 1e-5, "{case}: {made} to {at}");
         last = run.position();
     }
-    let hold = ClimberInput { grip: true, ..IDLE };
-    run.steps(way.rate as u32 / 2, &hold);
+    run.steps(way.rate as u32 / 2, &HOLD);
     let place = yaw.inverse() * run.position();
     let off = DVec3::new(0.0, place.y + DROP, place.z - RADIUS).length();
     within!(off, 2e-3, "{case}: hangs at {place}");
@@ -129,12 +125,10 @@ fn hangs_and_rests(played: Played, way: &Way, shapes: &[Shape]) -> Trace {
 }
 
 pub(crate) fn a_climber_that_steps_off_an_edge_hangs_from_it() {
-    for way in ways() {
-        for shape in [block(), plate()] {
-            every(0.0, |played| {
-                hangs_and_rests(played, &way, core::slice::from_ref(&shape))
-            });
-        }
+    for (way, shape) in pairs(ways(), [block(), plate()]) {
+        every(0.0, |played| {
+            hangs_and_rests(played, &way, core::slice::from_ref(&shape))
+        });
     }
 }
 
@@ -146,21 +140,19 @@ pub(crate) fn a_climber_that_can_step_down_or_has_no_room_does_not_hang() {
         (true, Some(-0.3)),
         (true, Some(-0.9)),
     ];
-    for way in ways() {
-        for (grip, below) in cases {
-            every(0.0, |played| {
-                let case = format!("{played:?}, {way:?}, {grip}, {below:?}");
-                let mut shapes = vec![block()];
-                shapes.extend(below.map(floor));
-                let mut run = standing(stage(played, &way, &shapes), &way);
-                let hung = hangs(&mut run, &way, grip);
-                assert!(!hung, "{case}: hangs at {}", run.position());
-                if below.is_some() {
-                    run.steps(way.rate as u32, &IDLE);
-                    assert_eq!(run.mode(), Standing, "{case} at {}", run.position());
-                }
-                run.sound()
-            });
-        }
+    for (way, (grip, below)) in pairs(ways(), cases) {
+        every(0.0, |played| {
+            let case = format!("{played:?}, {way:?}, {grip}, {below:?}");
+            let mut shapes = vec![block()];
+            shapes.extend(below.map(floor));
+            let mut run = standing(stage(played, &way, &shapes), &way);
+            let hung = hangs(&mut run, &way, grip);
+            assert!(!hung, "{case}: hangs at {}", run.position());
+            if below.is_some() {
+                run.steps(way.rate as u32, &IDLE);
+                assert_eq!(run.mode(), Standing, "{case} at {}", run.position());
+            }
+            run.sound()
+        });
     }
 }

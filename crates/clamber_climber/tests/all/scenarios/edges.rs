@@ -3,9 +3,9 @@
 use clamber_climber::ClimberMode::{Sliding, Standing};
 use glam::DVec3;
 
-use crate::stage::{
-    IDLE, Run, Shape, Stage, every, jolt, one_kind, radians, walk, walker_at, within,
-};
+use crate::cases::pairs;
+use crate::input::{IDLE, walk};
+use crate::stage::{Run, Shape, Stage, every, jolt, one_kind, radians, walker_at, within};
 
 pub(crate) fn a_gutter_of_768_faces_is_walked_along_to_its_caps() {
     every(0.0, |played| {
@@ -99,27 +99,25 @@ pub(crate) fn edges_within_a_slope_are_not_felt() {
 
 pub(crate) fn edges_within_a_slope_are_not_felt_at_360_metres_a_second() {
     let (normal, down) = steep();
-    for mirrored in [false, true] {
-        for start in [-8.0, -7.9, -6.0] {
-            every(0.0, |played| {
-                let config = jolt();
-                let along = down * start - DVec3::Z * 5.0;
-                let feet = along + (normal - DVec3::Y) * config.body.radius;
-                let stage = Stage::new(played).with_still(&quads(mirrored));
-                let mut run = Run::new(stage, config, feet).thrown(DVec3::Z * 360.0);
-                let from = run.position();
-                run.step(&IDLE);
-                let dt = run.stage.dt;
-                let pull = 9.81 * libm::sin(radians(60.0)) * dt;
-                let expected = DVec3::Z * 360.0 + down * pull;
-                let mean = DVec3::Z * 360.0 + down * (pull * 0.5);
-                let off = (run.position() - from).distance(mean * dt);
-                within!(off, 1e-4, "{played:?}, from {start}: off by {off}");
-                let off = run.state().velocity.distance(expected);
-                within!(off, 1e-4, "{played:?}, from {start}: velocity off by {off}");
-                run.sound()
-            });
-        }
+    for (mirrored, start) in pairs([false, true], [-8.0, -7.9, -6.0]) {
+        every(0.0, |played| {
+            let config = jolt();
+            let along = down * start - DVec3::Z * 5.0;
+            let feet = along + (normal - DVec3::Y) * config.body.radius;
+            let stage = Stage::new(played).with_still(&quads(mirrored));
+            let mut run = Run::new(stage, config, feet).thrown(DVec3::Z * 360.0);
+            let from = run.position();
+            run.step(&IDLE);
+            let dt = run.stage.dt;
+            let pull = 9.81 * libm::sin(radians(60.0)) * dt;
+            let expected = DVec3::Z * 360.0 + down * pull;
+            let mean = DVec3::Z * 360.0 + down * (pull * 0.5);
+            let off = (run.position() - from).distance(mean * dt);
+            within!(off, 1e-4, "{played:?}, from {start}: off by {off}");
+            let off = run.state().velocity.distance(expected);
+            within!(off, 1e-4, "{played:?}, from {start}: velocity off by {off}");
+            run.sound()
+        });
     }
 }
 
@@ -137,8 +135,7 @@ pub(crate) fn a_fin_on_an_edge_of_the_floor_blocks() {
     };
     for fin in [fin.clone(), fin.flipped()] {
         every(0.0, |played| {
-            let stage = Stage::new(played).with_still(&fin);
-            let mut run = Run::new(stage, walker_at(3.0), DVec3::new(-2.0, 0.0, 0.1)).settle();
+            let mut run = Run::on(played, &fin, walker_at(3.0), DVec3::new(-2.0, 0.0, 0.1));
             run.steps(90, &walk(DVec3::X));
             let p = run.position();
             assert!((p.x + 0.32).abs() <= 1e-4, "{played:?}: {p}");
@@ -156,12 +153,7 @@ pub(crate) fn the_seam_of_two_fields_is_not_felt() {
             .with_still(&field(0.0));
         let mut run = Run::new(stage, walker_at(2.0), -DVec3::X * 3.0).settle();
         run.steps(480, &walk(DVec3::X));
-        let lowest = run
-            .trace
-            .positions
-            .iter()
-            .map(|p| p.y)
-            .fold(f64::INFINITY, f64::min);
+        let lowest = run.trace.heights().fold(f64::INFINITY, f64::min);
         assert!(lowest >= 0.32 - 0.05, "{played:?}: sinks to {lowest}");
         assert!(run.feet().x > 12.0, "{played:?}: {}", run.feet());
         assert!(run.trace.always(Standing));

@@ -11,10 +11,10 @@ use clamber_climber::ClimberMode::{Falling, Standing};
 use clamber_surface::geometry::Similarity;
 use glam::DVec3;
 
+use crate::input::{IDLE, JUMP, walk};
 use crate::scenarios::platforms::{chord, on};
 use crate::stage::{
-    IDLE, JUMP, Run, Shape, Stage, TICK, every, jolt, kinds, shifted, turned, walk, walker_at,
-    within,
+    Played, Run, Shape, Stage, TICK, every, jolt, kinds, shifted, turned, walker_at, within,
 };
 
 pub(crate) fn rapier_488_falling_through_a_rising_lift() {
@@ -40,18 +40,21 @@ pub(crate) fn rapier_488_falling_through_a_rising_lift() {
     }
 }
 
+/// A climber on a floor, at a gap beside a wall that moves along its own plane.
+fn beside_a_wall(played: Played, gap: f64) -> Run {
+    let high = DVec3::new(40.0, 3.0, -0.32 - gap);
+    let wall = Shape::boxed(DVec3::new(-40.0, -1.0, -2.0), high);
+    let stage = Stage::new(played)
+        .with_still(&Shape::floor(10.0))
+        .with(&wall, |time| shifted(DVec3::X * (4.0 * time)));
+    Run::new(stage, walker_at(2.0), DVec3::ZERO).settle()
+}
+
 pub(crate) fn shock2quest_666_dragged_along_a_brushed_wall() {
-    // A wall that moves along its own plane, beside the climber, overlapping its margin, and walked against.
+    // The wall is beside the climber, overlaps its margin, and is walked against.
     for (gap, direction) in [(0.0, DVec3::ZERO), (-0.005, DVec3::ZERO), (0.0, -DVec3::Z)] {
         every(0.0, |played| {
-            let wall = Shape::boxed(
-                DVec3::new(-40.0, -1.0, -2.0),
-                DVec3::new(40.0, 3.0, -0.32 - gap),
-            );
-            let stage = Stage::new(played)
-                .with_still(&Shape::floor(10.0))
-                .with(&wall, |time| shifted(DVec3::X * (4.0 * time)));
-            let mut run = Run::new(stage, walker_at(2.0), DVec3::ZERO).settle();
+            let mut run = beside_a_wall(played, gap);
             run.steps(120, &walk(direction));
             let dragged = run.feet().x.abs();
             within!(dragged, 1e-3, "{played:?}, gap {gap}: by {dragged}");
@@ -61,11 +64,7 @@ pub(crate) fn shock2quest_666_dragged_along_a_brushed_wall() {
     }
     // Walking along the wall is neither slower nor faster than without it.
     every(0.0, |played| {
-        let wall = Shape::boxed(DVec3::new(-40.0, -1.0, -2.0), DVec3::new(40.0, 3.0, -0.32));
-        let stage = Stage::new(played)
-            .with_still(&Shape::floor(10.0))
-            .with(&wall, |time| shifted(DVec3::X * (4.0 * time)));
-        let mut run = Run::new(stage, walker_at(2.0), DVec3::ZERO).settle();
+        let mut run = beside_a_wall(played, 0.0);
         run.steps(120, &walk(DVec3::X));
         let off = run.feet().distance(DVec3::X * 4.0);
         within!(off, 1e-3, "{played:?}: off by {off}");

@@ -8,10 +8,12 @@ use clamber_climber::{ClimberConfig, ClimberInput};
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use glam::DVec3;
 
+use crate::cases::pairs;
+use crate::input::{IDLE, JUMP, walk};
 use crate::scenarios::platforms::{chord, drift};
 use crate::stage::{
-    IDLE, JUMP, Played, Run, Shape, Stage, TICK, every, jolt, kinds, one_kind, shifted, turned,
-    walk, walker_at, within,
+    Played, Run, Shape, Stage, TICK, every, jolt, kinds, one_kind, shifted, turned, walker_at,
+    within,
 };
 
 /// Hills with a wall on them.
@@ -111,17 +113,16 @@ pub(crate) fn stairs_in_steady_motion_are_walked_like_stairs_at_rest() {
     };
     let still = climb(one_kind(), DVec3::ZERO);
     assert!(still.always(Standing));
-    for &played in kinds() {
-        for velocity in [DVec3::new(1.0, 0.5, -1.5), DVec3::new(0.0, -2.0, 0.0)] {
-            let moving = climb(played, velocity);
-            let (apart, tick) = moving.apart(&still);
-            within!(
-                apart,
-                1e-4,
-                "{played:?} at {velocity}: {apart} at tick {tick}"
-            );
-            assert_eq!(moving.modes, still.modes, "{played:?} at {velocity}");
-        }
+    let velocities = [DVec3::new(1.0, 0.5, -1.5), DVec3::new(0.0, -2.0, 0.0)];
+    for (&played, velocity) in pairs(kinds(), velocities) {
+        let moving = climb(played, velocity);
+        let (apart, tick) = moving.apart(&still);
+        within!(
+            apart,
+            1e-4,
+            "{played:?} at {velocity}: {apart} at tick {tick}"
+        );
+        assert_eq!(moving.modes, still.modes, "{played:?} at {velocity}");
     }
 }
 

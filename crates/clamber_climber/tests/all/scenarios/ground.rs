@@ -2,14 +2,15 @@
 
 use std::cell::RefCell;
 
+use clamber_climber::ClimberConfig;
 use clamber_climber::ClimberMode::{Falling, Sliding, Standing};
-use clamber_climber::{ClimberConfig, ClimberEvent};
 use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
 
+use crate::events::{count, is_landed};
+use crate::input::{IDLE, JUMP, walk};
 use crate::stage::{
-    IDLE, JUMP, Run, Shape, Stage, TICK, every, jolt, kinds, one_kind, radians, shifted, walk,
-    walker_at, within,
+    Run, Shape, Stage, TICK, every, jolt, kinds, one_kind, radians, shifted, walker_at, within,
 };
 
 pub(crate) fn falls_lands_and_jumps() {
@@ -58,20 +59,15 @@ pub(crate) fn who_stands_above_its_point_goes_down_to_it() {
             for tick in 0..30 {
                 let report = run.step(&IDLE);
                 let pushed = report.pushed_out.length();
-                assert!(
-                    pushed < 1e-6,
-                    "{degrees}, {played:?}, tick {tick}: {pushed}"
-                );
+                let told = format!("{degrees}, {played:?}, tick {tick}");
+                assert!(pushed < 1e-6, "{told}: {pushed}");
                 let now = run.position().distance(stood);
-                assert_eq!(run.mode(), Standing, "{degrees}, {played:?}, tick {tick}");
-                assert!(now <= off + 1e-6, "{degrees}, {played:?}: {off} then {now}");
+                assert_eq!(run.mode(), Standing, "{told}");
+                assert!(now <= off + 1e-6, "{told}: {off} then {now}");
                 off = now;
             }
-            within!(
-                off,
-                config.body.margin + 1e-6,
-                "{degrees}, {played:?}: {off}"
-            );
+            let told = format!("{degrees}, {played:?}: {off}");
+            within!(off, config.body.margin + 1e-6, "{told}");
             run.sound()
         });
     }
@@ -139,28 +135,27 @@ fn slides(run: &mut Run, uphill: DVec3, angle: f64) {
     }
 }
 
+/// Ground 10 m wide along X, through points by x and height.
+fn strip(points: [(f64, f64); 3]) -> Shape {
+    points.windows(2).fold(Shape::default(), |shape, ends| {
+        let [(from, low), (to, high)] = [ends[0], ends[1]];
+        shape.and(Shape::quad([
+            DVec3::new(from, low, -5.0),
+            DVec3::new(from, low, 5.0),
+            DVec3::new(to, high, 5.0),
+            DVec3::new(to, high, -5.0),
+        ]))
+    })
+}
+
 /// Ground that is level up to its origin, then goes down along +X at 45 degrees.
 fn brink() -> Shape {
-    let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
-    let level = Shape::quad([
-        corner(-20.0, 0.0, -5.0),
-        corner(-20.0, 0.0, 5.0),
-        corner(0.0, 0.0, 5.0),
-        corner(0.0, 0.0, -5.0),
-    ]);
-    let down = Shape::quad([
-        corner(0.0, 0.0, -5.0),
-        corner(0.0, 0.0, 5.0),
-        corner(30.0, -30.0, 5.0),
-        corner(30.0, -30.0, -5.0),
-    ]);
-    level.and(down)
+    strip([(-20.0, 0.0), (0.0, 0.0), (30.0, -30.0)])
 }
 
 pub(crate) fn a_run_downhill_sticks_to_the_floor_or_flies_off() {
     every(0.0, |played| {
-        let stage = Stage::new(played).with_still(&brink());
-        let mut run = Run::new(stage, walker_at(10.0), -DVec3::X).settle();
+        let mut run = Run::on(played, &brink(), walker_at(10.0), -DVec3::X);
         run.steps(90, &walk(DVec3::X));
         assert!(run.trace.always(Standing), "{played:?}");
         let radius = run.config().body.radius;
@@ -179,8 +174,7 @@ pub(crate) fn a_run_downhill_sticks_to_the_floor_or_flies_off() {
     every(0.0, |played| {
         let mut config = walker_at(10.0);
         config.ground.snap_distance = 0.0;
-        let stage = Stage::new(played).with_still(&brink());
-        let mut run = Run::new(stage, config, -DVec3::X).settle();
+        let mut run = Run::on(played, &brink(), config, -DVec3::X);
         while run.mode() == Standing {
             run.step(&walk(DVec3::X));
             assert!(run.position().x < 0.5, "still stands at {}", run.position());
@@ -203,20 +197,7 @@ pub(crate) fn a_run_downhill_sticks_to_the_floor_or_flies_off() {
 /// Ground that is level up to 2 m along +X, then rises at an angle.
 fn ramp(angle: f64) -> Shape {
     let (rise, run) = (30.0 * libm::sin(angle), 30.0 * libm::cos(angle));
-    let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
-    let level = Shape::quad([
-        corner(-10.0, 0.0, -5.0),
-        corner(-10.0, 0.0, 5.0),
-        corner(2.0, 0.0, 5.0),
-        corner(2.0, 0.0, -5.0),
-    ]);
-    let up = Shape::quad([
-        corner(2.0, 0.0, -5.0),
-        corner(2.0, 0.0, 5.0),
-        corner(2.0 + run, rise, 5.0),
-        corner(2.0 + run, rise, -5.0),
-    ]);
-    level.and(up)
+    strip([(-10.0, 0.0), (2.0, 0.0), (2.0 + run, rise)])
 }
 
 /// Angle by which a slope may exceed the limit for a climber that stands already, radians.
@@ -229,8 +210,7 @@ pub(crate) fn a_slope_is_climbed_just_below_the_limit_and_not_just_above() {
             config.body.height = 0.6;
             config.ground.max_slope = limit;
             config.ground.step_height = 0.0;
-            let stage = Stage::new(played).with_still(&ramp(0.6));
-            let mut run = Run::new(stage, config, -DVec3::X * 4.0).settle();
+            let mut run = Run::on(played, &ramp(0.6), config, -DVec3::X * 4.0);
             run.steps(200, &walk(DVec3::X));
             let end = run.feet();
             if climbs {
@@ -301,7 +281,7 @@ pub(crate) fn a_walk_on_a_flat_box_keeps_its_height() {
         config.body.radius = 0.36;
         config.body.margin = 0.01;
         config.body.height = 1.5;
-        let stage = Stage::at(played, 1.0 / 30.0, DVec3::ZERO).with_still(&Shape::floor(15.0));
+        let stage = Stage::at_rate(played, 30.0).with_still(&Shape::floor(15.0));
         let mut run = Run::new(stage, config, DVec3::new(-7.0, 0.0, -7.0)).settle();
         let mut height = run.position().y;
         for tick in 0..90u32 {
@@ -320,8 +300,7 @@ pub(crate) fn a_walk_on_a_flat_box_keeps_its_height() {
 pub(crate) fn a_walk_of_a_metre_a_second_is_exact_at_any_tick_rate() {
     for rate in [24, 30, 50, 60] {
         every(0.0, |played| {
-            let dt = 1.0 / f64::from(rate);
-            let stage = Stage::at(played, dt, DVec3::ZERO).with_still(&Shape::floor(10.0));
+            let stage = Stage::at_rate(played, f64::from(rate)).with_still(&Shape::floor(10.0));
             let mut run = Run::new(stage, walker_at(1.0), DVec3::ZERO).settle();
             run.steps(rate, &walk(DVec3::Z));
             let off = run.feet().distance(DVec3::Z);
@@ -358,8 +337,7 @@ pub(crate) fn a_landing_is_reported_once() {
     let stage = Stage::new(one_kind()).with(&Shape::floor(10.0), still);
     let mut run = Run::new(stage, jolt(), DVec3::Y);
     run.steps(90, &IDLE);
-    let landed = |event: &&ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
-    assert_eq!(run.trace.events.iter().filter(landed).count(), 1);
+    assert_eq!(count(&run.trace.events, is_landed), 1);
 }
 
 /// Height of the apex of a parabola through the highest three positions.
@@ -376,13 +354,12 @@ pub(crate) fn a_jump_is_as_high_at_any_rate() {
     let found = RefCell::new(Vec::new());
     for rate in [30, 60, 120, 240] {
         every(0.0, |played| {
-            let dt = 1.0 / f64::from(rate);
-            let stage = Stage::at(played, dt, DVec3::ZERO).with_still(&Shape::floor(10.0));
+            let stage = Stage::at_rate(played, f64::from(rate)).with_still(&Shape::floor(10.0));
             let mut run = Run::new(stage, jolt(), DVec3::ZERO).settle();
             let start = run.position().y;
             run.step(&JUMP);
             run.steps(rate, &IDLE);
-            let heights = run.trace.positions.iter().map(|p| p.y - start);
+            let heights = run.trace.heights().map(|y| y - start);
             let heights: Vec<f64> = [0.0].into_iter().chain(heights).collect();
             let speed = run.config().ground.jump_speed;
             let expected = speed * speed / (2.0 * 9.81);

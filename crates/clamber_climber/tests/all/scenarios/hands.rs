@@ -1,14 +1,13 @@
 //! Ledges, fur, and being knocked down.
 
 use clamber_climber::ClimberMode::{Hanging, Holding, LedgeHanging, Standing, Tumbling};
-use clamber_climber::{Blow, ClimberConfig, ClimberEvent, ClimberInput};
+use clamber_climber::{ClimberConfig, ClimberEvent};
 use clamber_world::SurfaceKind;
 use glam::{DAffine3, DVec3};
 
-use crate::stage::{IDLE, Run, Shape, Skin, Stage, every, shifted, within};
-
-/// Input that only holds the grip.
-const HOLD: ClimberInput = ClimberInput { grip: true, ..IDLE };
+use crate::events::{count, is_turned_corner};
+use crate::input::{HOLD, IDLE, grip_climb, grip_walk, struck};
+use crate::stage::{Run, Shape, Skin, Stage, every, shifted, within};
 
 /// A block of 8 by 6 by 6 m around the origin.
 fn block() -> Shape {
@@ -34,45 +33,24 @@ pub(crate) fn a_ledge_is_caught_hung_from_and_climbed_over() {
     every(0.0, |played| {
         let stage = Stage::new(played).with_still(&block());
         let mut run = at(stage, DVec3::new(0.3, 2.75, 3.5));
-        let towards = |share: f64| ClimberInput {
-            walk: -DVec3::Z * share,
-            ..HOLD
-        };
+        let towards = |share: f64| grip_walk(-DVec3::Z * share);
         run.steps(3, &towards(0.1));
         assert_eq!(run.mode(), LedgeHanging, "{played:?}: {}", run.position());
         run.steps(60, &HOLD);
         let hangs = run.position().distance(DVec3::new(0.3, 2.4, 3.4));
         within!(hangs, 1e-3, "{played:?}: hangs at {}", run.position());
-        run.steps(
-            60,
-            &ClimberInput {
-                walk: DVec3::X,
-                ..HOLD
-            },
-        );
+        run.steps(60, &grip_walk(DVec3::X));
         let aside = run.position().distance(DVec3::new(-0.7, 2.4, 3.4));
         let other = run.position().distance(DVec3::new(1.3, 2.4, 3.4));
-        within!(
-            aside.min(other),
-            1e-3,
-            "{played:?}: along to {}",
-            run.position()
-        );
+        let place = run.position();
+        within!(aside.min(other), 1e-3, "{played:?}: along to {place}");
         run.steps(60, &towards(1.0));
-        let is_over = |event: &ClimberEvent| *event == ClimberEvent::Mantled;
-        assert!(
-            run.trace.events.iter().any(is_over),
-            "{played:?}: {}",
-            run.position()
-        );
+        let is_over = run.trace.events.contains(&ClimberEvent::Mantled);
+        assert!(is_over, "{played:?}: {}", run.position());
         run.steps(30, &HOLD);
         assert_eq!(run.mode(), Standing);
-        within!(
-            (run.feet().y - 3.0).abs(),
-            1e-4,
-            "{played:?}: {}",
-            run.feet()
-        );
+        let feet = run.feet();
+        within!((feet.y - 3.0).abs(), 1e-4, "{played:?}: {feet}");
         run.sound()
     });
 }
@@ -86,13 +64,11 @@ pub(crate) fn fur_is_climbed_and_its_corner_turned() {
         let gap = run.position().z - 3.4;
         within!(gap.abs(), 1e-3, "{played:?}: drawn to {gap}");
         let before = run.position();
-        let climb = |way: DVec3| ClimberInput { climb: way, ..HOLD };
-        run.steps(60, &climb(DVec3::Y));
+        run.steps(60, &grip_climb(DVec3::Y));
         let off = run.position().distance(before + DVec3::Y * 1.5);
         within!(off, 1e-3, "{played:?}: climbs to {}", run.position());
-        run.steps(240, &climb(DVec3::X));
-        let turned = |event: &&ClimberEvent| matches!(event, ClimberEvent::TurnedCorner { .. });
-        let corners = run.trace.events.iter().filter(turned).count();
+        run.steps(240, &grip_climb(DVec3::X));
+        let corners = count(&run.trace.events, is_turned_corner);
         assert_eq!(corners, 1, "{played:?}: {}", run.position());
         let gap = run.position().x - 4.4;
         within!(gap.abs(), 1e-3, "{played:?}: at {}", run.position());
@@ -123,14 +99,7 @@ pub(crate) fn a_knocked_down_climber_bounces_slides_and_gets_up() {
     every(0.0, |played| {
         let stage = Stage::new(played).with_still(&Shape::floor(60.0));
         let mut run = at(stage, DVec3::Y * 3.0);
-        run.step(&ClimberInput {
-            blow: Some(Blow {
-                by: None,
-                velocity: DVec3::new(6.0, 1.0, 0.0),
-                damage: 0.0,
-            }),
-            ..IDLE
-        });
+        run.step(&struck(DVec3::new(6.0, 1.0, 0.0), IDLE));
         assert_eq!(run.mode(), Tumbling);
         run.steps(300, &IDLE);
         assert_eq!(run.mode(), Standing, "{played:?}: {}", run.position());

@@ -1,51 +1,30 @@
 //! A stick that is held climbs in one direction, over bumps, round edges and bellies, and from walls onto ceilings.
 
+use clamber_climber::ClimberInput;
 use clamber_climber::ClimberMode::{Hanging, Holding};
-use clamber_climber::{ClimberConfig, ClimberInput};
-use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use clamber_world::SurfaceKind;
 use glam::{DAffine3, DVec3};
 
-use crate::stage::{Played, Run, Shape, Skin, Stage, kinds, radians};
-
-/// Input that only holds the grip.
-const HOLD: ClimberInput = ClimberInput {
-    grip: true,
-    ..ClimberInput::IDLE
-};
-
-fn stick(walk: DVec3) -> ClimberInput {
-    ClimberInput { walk, ..HOLD }
-}
+use crate::cases::pairs;
+use crate::input::{HOLD, grip_climb, grip_walk};
+use crate::stage::{Played, Run, Shape, Skin, Stage, kinds, radians, tireless, turned};
 
 /// Fur of a shape that turns about the vertical at a rate in radians a second.
 fn fur(shape: &Shape, turning: f64) -> Skin {
-    let pose = move |time: f64| {
-        let root = Similarity {
-            rotation: rotation_from_axis_angle(DVec3::Y, turning * time),
-            ..Similarity::IDENTITY
-        };
-        (vec![DAffine3::IDENTITY], root)
-    };
+    let pose = move |time: f64| (vec![DAffine3::IDENTITY], turned(DVec3::Y, turning * time));
     Skin::of(shape, SurfaceKind::Fur, &|_| vec![1.0], Box::new(pose))
 }
 
 /// A climber that does not tire, with the centre of its ball at a point, after it has taken hold.
 fn holding(played: Played, rate: f64, shape: &Shape, turning: f64, center: DVec3) -> Run {
-    let stage = Stage::at(played, 1.0 / rate, DVec3::ZERO).with_skin(fur(shape, turning));
-    let config = ClimberConfig {
-        stamina: None,
-        ..ClimberConfig::colossus_climber()
-    };
+    let stage = Stage::at_rate(played, rate).with_skin(fur(shape, turning));
+    let config = tireless();
     let mut run = Run::new(stage, config, center - DVec3::Y * config.body.radius);
     for _ in 0..(rate * 0.25) as u32 {
         run.step_held(&HOLD);
     }
-    assert!(
-        matches!(run.mode(), Holding),
-        "{played:?}: {:?}",
-        run.state()
-    );
+    let state = run.state();
+    assert!(matches!(run.mode(), Holding), "{played:?}: {state:?}");
     run
 }
 
@@ -87,21 +66,19 @@ pub(crate) fn a_held_stick_crosses_a_belly_as_a_direction_does() {
         (60.0, 5.0, 0.6),
         (240.0, 20.0, 4.0),
     ];
-    for &played in kinds() {
-        for (rate, degrees, side) in rides {
-            let way = DVec3::new(libm::sin(side), 0.0, libm::cos(side));
-            let start = way * -2.5 + DVec3::Y * 4.58;
-            let shape = belly(degrees);
-            let climb = ClimberInput { climb: way, ..HOLD };
-            let [walked, climbed] = [stick(way), climb].map(|input| {
-                let mut run = holding(played, rate, &shape, 0.0, start);
-                ride(&mut run, rate, 3.0, &input, way)
-            });
-            let told = format!("{played:?}, {rate} Hz, {degrees} degrees, {way}");
-            let share = walked.0 / climbed.0;
-            assert!(share > 0.95, "{told}: {} of {} m", walked.0, climbed.0);
-            assert!(walked.1 < 1e-3, "{told}: back by {} m", walked.1);
-        }
+    for (&played, (rate, degrees, side)) in pairs(kinds(), rides) {
+        let way = DVec3::new(libm::sin(side), 0.0, libm::cos(side));
+        let start = way * -2.5 + DVec3::Y * 4.58;
+        let shape = belly(degrees);
+        let climb = grip_climb(way);
+        let [walked, climbed] = [grip_walk(way), climb].map(|input| {
+            let mut run = holding(played, rate, &shape, 0.0, start);
+            ride(&mut run, rate, 3.0, &input, way)
+        });
+        let told = format!("{played:?}, {rate} Hz, {degrees} degrees, {way}");
+        let share = walked.0 / climbed.0;
+        assert!(share > 0.95, "{told}: {} of {} m", walked.0, climbed.0);
+        assert!(walked.1 < 1e-3, "{told}: back by {} m", walked.1);
     }
 }
 
@@ -121,7 +98,7 @@ pub(crate) fn a_held_stick_goes_round_the_edges_of_a_box() {
             let mut before = DVec3::ZERO;
             for _ in 0..(rate * 11.0) as u32 {
                 let from = run.position();
-                run.step(&stick(DVec3::new(0.02, 0.0, 1.0)));
+                run.step(&grip_walk(DVec3::new(0.02, 0.0, 1.0)));
                 let step = run.position() - from;
                 let back = -step.dot(before.normalize_or_zero());
                 assert!(back < 1e-3, "{told}: back by {back} m at {from}");
@@ -143,15 +120,13 @@ pub(crate) fn a_held_stick_leads_from_a_wall_onto_its_ceiling() {
     let wall = Shape::boxed(DVec3::new(-3.0, 0.0, -1.0), DVec3::new(3.0, 5.0, 0.0));
     let ceiling = Shape::boxed(DVec3::new(-3.0, 5.0, -1.0), DVec3::new(3.0, 6.0, 9.0));
     let shape = wall.and(ceiling);
-    for &played in kinds() {
-        for rate in [30.0, 60.0, 240.0] {
-            let mut run = holding(played, rate, &shape, 0.0, DVec3::new(0.1, 3.0, 0.42));
-            let (_, back) = ride(&mut run, rate, 5.0, &stick(DVec3::NEG_Z), DVec3::Z);
-            let p = run.position();
-            let told = format!("{played:?} at {rate} Hz: at {p}, back by {back} m");
-            assert!(p.z > 3.0 && (p.y - 4.6).abs() < 0.02, "{told}");
-            assert!(back < 1e-3, "{told}");
-        }
+    for (&played, rate) in pairs(kinds(), [30.0, 60.0, 240.0]) {
+        let mut run = holding(played, rate, &shape, 0.0, DVec3::new(0.1, 3.0, 0.42));
+        let (_, back) = ride(&mut run, rate, 5.0, &grip_walk(DVec3::NEG_Z), DVec3::Z);
+        let p = run.position();
+        let told = format!("{played:?} at {rate} Hz: at {p}, back by {back} m");
+        assert!(p.z > 3.0 && (p.y - 4.6).abs() < 0.02, "{told}");
+        assert!(back < 1e-3, "{told}");
     }
 }
 
@@ -163,7 +138,7 @@ pub(crate) fn a_stick_that_turns_far_enough_leads_anew() {
         DVec3::new(libm::sin(angle), 0.0, libm::cos(angle))
     };
     for &played in kinds() {
-        for (turned, taken) in [
+        for (angle, taken) in [
             (10.0, 0.0),
             (18.0, 0.0),
             (22.0, 22.0),
@@ -171,9 +146,9 @@ pub(crate) fn a_stick_that_turns_far_enough_leads_anew() {
             (180.0, 180.0),
         ] {
             let mut run = holding(played, 60.0, &shape, 0.0, DVec3::new(0.0, 4.58, -2.0));
-            ride(&mut run, 60.0, 0.5, &stick(at(0.0)), DVec3::Z);
-            let (way, _) = ride(&mut run, 60.0, 1.0, &stick(at(turned)), at(taken));
-            assert!(way > 1.45, "{played:?}, {turned} degrees: {way} m of 1.5");
+            ride(&mut run, 60.0, 0.5, &grip_walk(at(0.0)), DVec3::Z);
+            let (way, _) = ride(&mut run, 60.0, 1.0, &grip_walk(at(angle)), at(taken));
+            assert!(way > 1.45, "{played:?}, {angle} degrees: {way} m of 1.5");
         }
         // A quarter turn of the creature in two seconds takes the direction along.
         let mut run = holding(
@@ -183,8 +158,8 @@ pub(crate) fn a_stick_that_turns_far_enough_leads_anew() {
             core::f64::consts::FRAC_PI_4,
             DVec3::new(0.0, 4.58, 0.0),
         );
-        ride(&mut run, 60.0, 2.0, &stick(DVec3::Z), DVec3::Z);
-        let (way, _) = ride(&mut run, 60.0, 0.1, &stick(DVec3::Z), DVec3::X);
+        ride(&mut run, 60.0, 2.0, &grip_walk(DVec3::Z), DVec3::Z);
+        let (way, _) = ride(&mut run, 60.0, 0.1, &grip_walk(DVec3::Z), DVec3::X);
         assert!(way > 0.12, "{played:?}: {way} m along X");
         assert!(!matches!(run.mode(), Hanging));
     }

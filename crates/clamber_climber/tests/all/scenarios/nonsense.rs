@@ -7,8 +7,9 @@ use clamber_world::{
 };
 use glam::DVec3;
 
+use crate::input::{IDLE, walk};
 use crate::scenarios::frames::{hills, tour};
-use crate::stage::{IDLE, Run, Stage, TICK, jolt, one_kind, walk, walker_at};
+use crate::stage::{Run, Stage, TICK, jolt, one_kind, walker_at};
 
 /// An obstacle with bad numbers in some of its answers.
 struct Broken<'a> {
@@ -63,15 +64,11 @@ pub(crate) fn not_finite_answers_of_an_obstacle_do_not_spread() {
         DVec3::NEG_INFINITY,
         DVec3::splat(f64::MAX),
     ] {
-        let stage = Stage::new(one_kind()).with_still(&hills());
-        let mut run = Run::new(stage, walker_at(3.0), DVec3::Y).settle();
+        let mut run = Run::on(one_kind(), &hills(), walker_at(3.0), DVec3::Y);
         for tick in 0..20 {
             let report = run.step_around(&tour(tick), |inner| Box::new(Broken { inner, bad }));
-            assert!(
-                is_finite(run.state()),
-                "{bad}, tick {tick}: {:?}",
-                run.state()
-            );
+            let state = run.state();
+            assert!(is_finite(state), "{bad}, tick {tick}: {state:?}");
             let p = run.position();
             assert!(p.length() < 100.0, "{bad}, tick {tick}: {p}, {report:?}");
         }
@@ -86,8 +83,7 @@ fn is_finite(state: &ClimberState) -> bool {
 }
 
 pub(crate) fn not_finite_arguments_are_refused() {
-    let stage = Stage::new(one_kind()).with_still(&hills());
-    let mut run = Run::new(stage, jolt(), DVec3::Y).settle();
+    let mut run = Run::on(one_kind(), &hills(), jolt(), DVec3::Y);
     let before = *run.climber.state();
     let mut climber = run.climber.clone();
     for bad in [f64::NAN, f64::INFINITY] {

@@ -6,10 +6,10 @@ use clamber_climber::ClimberMode::{Falling, Standing};
 use clamber_surface::geometry::Similarity;
 use glam::DVec3;
 
+use crate::input::{IDLE, JUMP, walk};
 use crate::scenarios::belt::Belt;
 use crate::stage::{
-    IDLE, JUMP, Played, Run, Shape, Stage, TICK, Trace, every, jolt, kinds, shifted, turned, walk,
-    walker_at, within,
+    Played, Run, Shape, Stage, TICK, Trace, every, jolt, kinds, shifted, turned, walker_at, within,
 };
 
 /// Distance between the chord of one tick and the arc of a circle with a radius, at an angular speed.
@@ -38,16 +38,27 @@ pub(crate) fn drift(trace: &Trace, start: DVec3, motion: impl Fn(f64) -> Similar
     off.fold(0.0, f64::max)
 }
 
+/// Rides a platform without input. The climber stands all the time, and stays where it stood on the platform.
+fn rides(
+    mut run: Run,
+    ticks: u32,
+    allowed: f64,
+    motion: impl Fn(f64) -> Similarity,
+    told: &str,
+) -> Trace {
+    let (start, played) = (run.position(), run.stage.played());
+    run.steps(ticks, &IDLE);
+    assert!(run.trace.always(Standing), "{played:?}, {told}");
+    let off = drift(&run.trace, start, motion);
+    within!(off, allowed, "{played:?}, {told}: {off}");
+    run.sound()
+}
+
 pub(crate) fn a_turning_platform_carries_without_lag() {
     let motion = |time: f64| turned(DVec3::Y, TAU * time);
     every(chord(9.0, TAU), |played| {
-        let mut run = on(played, 10.0, DVec3::X * 9.0, motion);
-        let start = run.position();
-        run.steps(60, &IDLE);
-        assert!(run.trace.always(Standing));
-        let off = drift(&run.trace, start, motion);
-        within!(off, 1e-3, "{played:?}: {off}");
-        run.sound()
+        let run = on(played, 10.0, DVec3::X * 9.0, motion);
+        rides(run, 60, 1e-3, motion, "turns")
     });
 }
 
@@ -62,30 +73,20 @@ fn lift(speed: f64) -> impl Fn(f64) -> Similarity + Copy {
 
 pub(crate) fn a_lift_carries_up_and_down_at_any_speed() {
     for speed in [0.5, 5.0, 20.0] {
+        let motion = lift(speed);
         every(0.0, |played| {
-            let motion = lift(speed);
-            let mut run = on(played, 5.0, DVec3::new(1.0, 0.0, 0.5), motion);
-            let start = run.position();
-            run.steps(180, &IDLE);
-            assert!(run.trace.always(Standing), "{played:?} at {speed} m/s");
-            let off = drift(&run.trace, start, motion);
-            within!(off, 1e-4, "{played:?} at {speed} m/s: {off}");
-            run.sound()
+            let run = on(played, 5.0, DVec3::new(1.0, 0.0, 0.5), motion);
+            rides(run, 180, 1e-4, motion, &format!("{speed} m/s"))
         });
     }
 }
 
 pub(crate) fn a_lift_that_reverses_in_one_tick_keeps_a_rider_with_sticky_feet() {
     for speed in [0.5, 5.0, 20.0] {
+        let motion = move |time: f64| shifted(DVec3::Y * (speed * wave(time)));
         every(0.0, |played| {
-            let motion = move |time: f64| shifted(DVec3::Y * (speed * wave(time)));
-            let mut run = on(played, 5.0, DVec3::X, motion);
-            let start = run.position();
-            run.steps(240, &IDLE);
-            assert!(run.trace.always(Standing), "{played:?} at {speed} m/s");
-            let off = drift(&run.trace, start, motion);
-            within!(off, 1e-4, "{played:?} at {speed} m/s: {off}");
-            run.sound()
+            let run = on(played, 5.0, DVec3::X, motion);
+            rides(run, 240, 1e-4, motion, &format!("{speed} m/s"))
         });
     }
 }
@@ -127,15 +128,10 @@ pub(crate) fn a_movable_platform_at_rest_is_like_ground() {
 }
 
 pub(crate) fn an_idle_rider_of_a_lift_stays_on_it() {
+    let motion = |time: f64| shifted(DVec3::Y * (2.0 * libm::sin(3.0 * time)));
     every(0.0, |played| {
-        let motion = |time: f64| shifted(DVec3::Y * (2.0 * libm::sin(3.0 * time)));
-        let mut run = on(played, 3.0, DVec3::X, motion);
-        let start = run.position();
-        run.steps(600, &IDLE);
-        assert!(run.trace.always(Standing));
-        let off = drift(&run.trace, start, motion);
-        within!(off, 1e-4, "{played:?}: {off}");
-        run.sound()
+        let run = on(played, 3.0, DVec3::X, motion);
+        rides(run, 600, 1e-4, motion, "goes up and down")
     });
 }
 
@@ -168,13 +164,7 @@ pub(crate) fn a_minute_on_each_of_jolts_platforms() {
     for (name, chord, motion) in samples() {
         every(chord, |played| {
             let start = motion(0.0).transform_point(DVec3::new(2.0, 0.0, 1.0));
-            let mut run = on(played, 5.0, start, motion);
-            let start = run.position();
-            run.steps(3600, &IDLE);
-            assert!(run.trace.always(Standing), "{name}, {played:?}");
-            let off = drift(&run.trace, start, motion);
-            within!(off, 1e-3, "{name}, {played:?}: {off}");
-            run.sound()
+            rides(on(played, 5.0, start, motion), 3600, 1e-3, motion, name)
         });
     }
 }
@@ -194,19 +184,12 @@ pub(crate) fn a_wall_that_comes_and_goes_pushes_but_does_not_pull() {
             run.step(&IDLE);
             let p = run.position();
             let face = front(run.stage.time());
-            assert!(
-                p.x - face >= 0.32 - 1e-3,
-                "{played:?}: {p} in a wall at {face}"
-            );
+            let told = format!("{played:?}: {p} before a wall at {face}");
+            assert!(p.x - face >= 0.32 - 1e-3, "{told}: in the wall");
             farthest = farthest.max(face);
-            assert!(
-                p.x <= (farthest + 0.32).max(0.0) + 1e-3,
-                "{played:?}: flung to {p}"
-            );
-            assert!(
-                (p.y - 0.32).abs() <= 1e-3 && p.z.abs() <= 1e-3,
-                "{played:?}: {p}"
-            );
+            let ahead = (farthest + 0.32).max(0.0);
+            assert!(p.x <= ahead + 1e-3, "{told}: flung");
+            assert!((p.y - 0.32).abs() <= 1e-3 && p.z.abs() <= 1e-3, "{told}");
         }
         assert!(run.trace.always(Standing));
         run.sound()
@@ -235,15 +218,10 @@ pub(crate) fn a_belt_carries_at_its_speed() {
 }
 
 pub(crate) fn a_diagonally_descending_platform_does_not_jitter() {
+    let motion = |time: f64| shifted(DVec3::new(0.0, -3.0, -3.0) * time);
     every(0.0, |played| {
-        let motion = |time: f64| shifted(DVec3::new(0.0, -3.0, -3.0) * time);
-        let mut run = on(played, 5.0, DVec3::ZERO, motion);
-        let start = run.position();
-        run.steps(300, &IDLE);
-        assert!(run.trace.always(Standing));
-        let off = drift(&run.trace, start, motion);
-        within!(off, 1e-3, "{played:?}: {off}");
-        run.sound()
+        let run = on(played, 5.0, DVec3::ZERO, motion);
+        rides(run, 300, 1e-3, motion, "goes down")
     });
 }
 
@@ -284,14 +262,8 @@ fn reverses(speed: f64) -> impl Fn(f64) -> Similarity + Copy {
 pub(crate) fn a_reversal_throws_a_free_rider_and_keeps_one_with_sticky_feet() {
     let speed = 2.4;
     every(0.0, |played| {
-        let motion = reverses(speed);
-        let mut run = on(played, 5.0, DVec3::X, motion);
-        let start = run.position();
-        run.steps(150, &IDLE);
-        assert!(run.trace.always(Standing), "{played:?}");
-        let off = drift(&run.trace, start, motion);
-        within!(off, 1e-4, "{played:?}: {off}");
-        run.sound()
+        let run = on(played, 5.0, DVec3::X, reverses(speed));
+        rides(run, 150, 1e-4, reverses(speed), "reverses")
     });
     every(0.0, |played| {
         let mut config = jolt();
@@ -319,30 +291,19 @@ pub(crate) fn a_reversal_throws_a_free_rider_and_keeps_one_with_sticky_feet() {
 
 pub(crate) fn the_edge_of_a_fast_lift_does_not_push_sideways() {
     for (beyond, speed) in [(-0.05, 10.0), (0.0, 10.0), (0.1, 10.0), (0.1, 30.0)] {
+        let motion = move |time: f64| shifted(DVec3::Y * (speed * time));
         every(0.0, |played| {
-            let motion = move |time: f64| shifted(DVec3::Y * (speed * time));
             // A ball that rests on the edge itself is a little lower.
-            let stage = Stage::new(played).with(&Shape::floor(5.0), motion);
-            let mut run = Run::new(stage, jolt(), DVec3::new(5.0 + beyond, 0.0, 0.3)).settle();
-            let start = run.position();
-            run.steps(120, &IDLE);
-            assert!(run.trace.always(Standing), "{played:?}, {beyond} m beyond");
-            let off = drift(&run.trace, start, motion);
-            within!(off, 1e-3, "{played:?}, {beyond} m beyond: {off}");
-            run.sound()
+            let run = on(played, 5.0, DVec3::new(5.0 + beyond, 0.0, 0.3), motion);
+            rides(run, 120, 1e-3, motion, &format!("{beyond} m beyond"))
         });
     }
 }
 
 pub(crate) fn a_platform_that_starts_in_one_tick_takes_its_rider_along() {
+    let motion = |time: f64| shifted(DVec3::X * (4.0 * (time - 0.5).max(0.0)));
     every(0.0, |played| {
-        let motion = |time: f64| shifted(DVec3::X * (4.0 * (time - 0.5).max(0.0)));
-        let mut run = on(played, 5.0, DVec3::ZERO, motion);
-        let start = run.position();
-        run.steps(120, &IDLE);
-        assert!(run.trace.always(Standing));
-        let off = drift(&run.trace, start, motion);
-        within!(off, 1e-5, "{played:?}: {off}");
-        run.sound()
+        let run = on(played, 5.0, DVec3::ZERO, motion);
+        rides(run, 120, 1e-5, motion, "starts")
     });
 }

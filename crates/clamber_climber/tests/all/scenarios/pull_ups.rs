@@ -1,15 +1,13 @@
 //! Pull-ups onto ledges that have no room above: below a ceiling, against a crate, and with room again.
 
 use clamber_climber::ClimberMode::{Holding, LedgeHanging, Standing};
-use clamber_climber::{ClimberConfig, ClimberEvent, ClimberInput};
+use clamber_climber::{ClimberEvent, ClimberInput};
 use clamber_surface::geometry::Similarity;
 use clamber_world::SurfaceKind;
 use glam::{DAffine3, DVec3};
 
-use crate::stage::{IDLE, Played, Run, Shape, Skin, Stage, every, shifted, turned, within};
-
-/// Input that only holds the grip.
-const HOLD: ClimberInput = ClimberInput { grip: true, ..IDLE };
+use crate::input::{HOLD, IDLE, grip_walk};
+use crate::stage::{Played, Run, Shape, Skin, Stage, every, shifted, tireless, turned, within};
 
 /// Time after which a climber gives up a pull-up that makes no progress, seconds.
 const GIVES_UP: f64 = 0.3;
@@ -55,28 +53,20 @@ impl Above {
 }
 
 /// A scene that is turned about the vertical.
-struct Side {
-    from_front: Similarity,
-}
+struct Side(Similarity);
 
 impl Side {
-    fn at(angle: f64) -> Self {
-        let from_front = turned(DVec3::Y, angle);
-        Self { from_front }
-    }
-
     /// Turns a vector or a position that is given for the side that faces +Z.
     fn to(&self, front: DVec3) -> DVec3 {
-        self.from_front.rotation * front
+        self.0.rotation * front
     }
 
     fn shape(&self, shape: Shape) -> Shape {
-        shape.placed(&self.from_front)
+        shape.placed(&self.0)
     }
 
     fn stick(&self, front: DVec3) -> ClimberInput {
-        let walk = self.to(front);
-        ClimberInput { walk, ..HOLD }
+        grip_walk(self.to(front))
     }
 }
 
@@ -96,8 +86,7 @@ const PLACE: DVec3 = DVec3::new(0.3, 2.4, 3.4);
 
 /// A climber that hangs from the edge.
 fn hung(stage: Stage, side: &Side, case: &str) -> Run {
-    let mut config = ClimberConfig::colossus_climber();
-    config.stamina = None;
+    let config = tireless();
     let start = side.to(DVec3::new(0.3, 2.75, 3.5)) - DVec3::Y * config.body.radius;
     let dt = stage.dt;
     let mut run = Run::new(stage, config, start);
@@ -118,6 +107,16 @@ fn until_in_place(run: &mut Run, place: DVec3, input: &ClimberInput, most: f64) 
         let is_there = run.mode() == LedgeHanging && run.position().distance(place) < 1e-3;
         is_there.then_some(f64::from(tick) * dt)
     })
+}
+
+/// Steps until the climber is blocked, for a second at most.
+fn until_blocked(run: &mut Run, input: &ClimberInput) {
+    for _ in 0..ticks(1.0, run.stage.dt) {
+        run.step(input);
+        if run.state().ledge_hanging.blocked > 0.0 {
+            return;
+        }
+    }
 }
 
 /// Steps a climber that is blocked until it gives up. Checks that its velocity is the velocity at which it moves, and
@@ -162,7 +161,7 @@ fn rests(run: &mut Run, place: DVec3, input: &ClimberInput, case: &str) {
 fn each_case(play: impl Fn(Played, Above, &Side, f64, &str) -> crate::stage::Trace) {
     let rates = [60.0, 30.0, 120.0, 240.0];
     for (index, above) in ALL.into_iter().enumerate() {
-        let side = Side::at(1.1 * index as f64);
+        let side = Side(turned(DVec3::Y, 1.1 * index as f64));
         let rate = rates[index % rates.len()];
         every(0.0, |played| {
             let case = format!("{played:?}, {above:?}, {rate} Hz");
@@ -183,11 +182,8 @@ pub(crate) fn a_pull_up_without_room_is_given_up_after_a_while() {
         let (place, up) = (side.to(PLACE), side.stick(UP));
         // The climber tries, gives up by itself, and does not try again while the stick is held up.
         run.steps(ticks(0.25, dt), &up);
-        assert!(
-            run.state().ledge_hanging.pull_up > 0.0,
-            "{case}: {}",
-            run.position()
-        );
+        let at = run.position();
+        assert!(run.state().ledge_hanging.pull_up > 0.0, "{case}: {at}");
         blocked_at_rest(&mut run, &up, case);
         let back = until_in_place(&mut run, place, &up, 1.3);
         assert!(back.is_some(), "{case}: {:?}", run.state());
@@ -213,13 +209,7 @@ pub(crate) fn a_pull_up_without_room_obeys_the_stick_at_once() {
         let mut run = hung(stage(played, above, side, dt), side, case);
         let (place, up) = (side.to(PLACE), side.stick(UP));
         for input in [HOLD, side.stick(-UP), side.stick(DVec3::X * 1e-6)] {
-            // Steps until the climber is blocked.
-            for _ in 0..ticks(1.0, dt) {
-                run.step(&up);
-                if run.state().ledge_hanging.blocked > 0.0 {
-                    break;
-                }
-            }
+            until_blocked(&mut run, &up);
             let (blocked, high) = (run.state().ledge_hanging.blocked, run.position());
             assert!(blocked > 0.0, "{case}: at {high}");
             run.step(&input);
@@ -240,15 +230,7 @@ pub(crate) fn a_climber_that_gives_up_a_pull_up_goes_aside_lets_go_and_jumps() {
     each_case(|played, above, side, dt, case| {
         let mut run = hung(stage(played, above, side, dt), side, case);
         let (place, up) = (side.to(PLACE), side.stick(UP));
-        let blocked = |run: &mut Run| {
-            for _ in 0..ticks(1.0, dt) {
-                run.step(&up);
-                if run.state().ledge_hanging.blocked > 0.0 {
-                    return;
-                }
-            }
-        };
-        blocked(&mut run);
+        until_blocked(&mut run, &up);
         run.steps(ticks(0.6, dt), &side.stick(DVec3::NEG_X));
         let made = (place - run.position()).dot(side.to(DVec3::X));
         assert!(made > 0.3, "{case}: made {made}, at {}", run.position());
@@ -262,7 +244,7 @@ pub(crate) fn a_climber_that_gives_up_a_pull_up_goes_aside_lets_go_and_jumps() {
         ] {
             run.put(state);
             run.step_held(&HOLD);
-            blocked(&mut run);
+            until_blocked(&mut run, &up);
             run.step(&HOLD);
             let report = run.step(&input);
             assert!(report.events.contains(&says), "{case}: {:?}", report.events);
@@ -281,7 +263,7 @@ pub(crate) fn a_climber_that_gives_up_a_pull_up_climbs_down() {
         let top = Shape::boxed(DVec3::new(-4.0, 2.2, -3.0), DVec3::new(4.0, 3.0, 3.0));
         let stage = Stage::new(played).with_still(&top).with_skin(fur);
         let stage = stage.with_still(&Above::Ceiling(0.5).shape());
-        let side = Side::at(0.0);
+        let side = Side(Similarity::IDENTITY);
         let mut run = hung(stage, &side, "fur below");
         run.steps(60, &side.stick(UP));
         run.steps(60, &side.stick(-UP));
@@ -301,7 +283,7 @@ pub(crate) fn a_pull_up_goes_on_once_there_is_room() {
             };
             let stage = Stage::new(played).with_still(&block());
             let stage = stage.with(&Above::Ceiling(0.5).shape(), rises);
-            let side = Side::at(0.0);
+            let side = Side(Similarity::IDENTITY);
             let mut run = hung(stage, &side, "opens");
             run.steps(90, &side.stick(UP));
             assert_eq!(run.mode(), Standing, "{played:?}: {}", run.position());
@@ -316,7 +298,7 @@ pub(crate) fn a_pull_up_with_room_goes_on_by_itself() {
         every(0.0, |played| {
             let dt = 1.0 / rate;
             let stage = Stage::at(played, dt, DVec3::ZERO).with_still(&block());
-            let side = Side::at(0.0);
+            let side = Side(Similarity::IDENTITY);
             let mut run = hung(stage, &side, "room");
             run.steps(ticks(0.1, dt), &side.stick(UP));
             run.steps(ticks(0.8 + GIVES_UP, dt), &HOLD);

@@ -2,14 +2,29 @@
 
 use clamber_verify::brute_force::{Triangles, distance, segment_distance};
 use clamber_world::rapier3d::prelude::ColliderBuilder;
-use clamber_world::{Contact, Obstacle, TargetMotion, WorldCapsule};
+use clamber_world::{Contact, Obstacle, SweepContact, TargetMotion, WorldCapsule};
 use glam::DVec3;
 
+use crate::cases::pairs;
 use crate::stage::{Played, Shape, Stage, kinds, shifted, within};
+
+/// All motions of a target.
+const TARGETS: [TargetMotion; 2] = [TargetMotion::Still, TargetMotion::Moving];
 
 /// Queries the only obstacle of a stage.
 fn ask<T>(stage: &Stage, question: impl FnOnce(&dyn Obstacle) -> T) -> T {
     stage.obstacles(|obstacles| question(obstacles[0].1))
+}
+
+fn cast(
+    stage: &Stage,
+    capsule: &WorldCapsule,
+    way: DVec3,
+    target: TargetMotion,
+) -> Option<SweepContact> {
+    ask(stage, |obstacle| {
+        obstacle.cast_capsule(capsule, [way; 2], target)
+    })
 }
 
 fn overlaps(stage: &Stage, capsule: &WorldCapsule) -> Vec<Contact> {
@@ -56,9 +71,7 @@ pub(crate) fn a_sliver_is_hit_exactly_where_it_is() {
         for &played in kinds() {
             let stage = Stage::new(played).with_still(&triangle(corners));
             let ball = WorldCapsule::ball(from, 0.2);
-            let hit = ask(&stage, |obstacle| {
-                obstacle.cast_capsule(&ball, [way; 2], TargetMotion::Still)
-            });
+            let hit = cast(&stage, &ball, way, TargetMotion::Still);
             assert_eq!(
                 hit.is_some(),
                 truth < 0.2,
@@ -117,18 +130,12 @@ pub(crate) fn a_cast_that_starts_inside_hits_at_time_0() {
         // The ball starts outside the face, inside, outside and moves away, and on the face.
         for (height, way) in [(1.2, -5.0), (0.8, -5.0), (1.2, 5.0), (1.0, 1.0)] {
             let ball = WorldCapsule::ball(DVec3::Y * height, 0.5);
-            let hit = ask(&stage, |obstacle| {
-                obstacle.cast_capsule(&ball, [DVec3::Y * way; 2], TargetMotion::Still)
-            });
-            assert!(hit.is_some(), "{played:?}: nothing at {height}");
-            let hit = hit.unwrap();
+            let hit = cast(&stage, &ball, DVec3::Y * way, TargetMotion::Still);
+            let hit = hit.unwrap_or_else(|| panic!("{played:?}: nothing at {height}"));
             assert_eq!(hit.fraction, 0.0, "{played:?}");
             assert!(hit.started_inside, "{played:?}");
-            assert!(
-                (hit.contact.normal - DVec3::Y).length() <= 1e-6,
-                "{:?}",
-                hit.contact
-            );
+            let contact = hit.contact;
+            assert!((contact.normal - DVec3::Y).length() <= 1e-6, "{contact:?}");
         }
     }
 }
@@ -139,34 +146,24 @@ pub(crate) fn a_core_on_a_feature_has_a_unit_separation_normal() {
     for &played in kinds() {
         let stage = Stage::new(played).with_still(&triangle(corners));
         for center in [DVec3::ZERO, (a + b) * 0.5, a] {
+            let along = |from: DVec3, to: DVec3| WorldCapsule {
+                ends: [from, to],
+                radius: 0.5,
+            };
             for capsule in [
                 WorldCapsule::ball(center, 0.5),
                 // These capsules pass through the feature, lie along it, or have an end on it.
-                WorldCapsule {
-                    ends: [center - DVec3::Y, center + DVec3::Y],
-                    radius: 0.5,
-                },
-                WorldCapsule {
-                    ends: [center - DVec3::Z, center + DVec3::Z],
-                    radius: 0.5,
-                },
-                WorldCapsule {
-                    ends: [center, center + DVec3::Y],
-                    radius: 0.5,
-                },
+                along(center - DVec3::Y, center + DVec3::Y),
+                along(center - DVec3::Z, center + DVec3::Z),
+                along(center, center + DVec3::Y),
             ] {
                 let found = overlaps(&stage, &capsule);
                 assert_eq!(found.len(), 1, "{played:?}: {capsule:?}");
-                assert!(
-                    found[0].distance.abs() <= 1e-5,
-                    "{played:?}: {:?}",
-                    found[0]
-                );
+                let first = found[0];
+                assert!(first.distance.abs() <= 1e-5, "{played:?}: {first:?}");
                 let away = found[0].separation_normal(capsule.nearest_on_axis(found[0].point));
                 assert!((away.length() - 1.0).abs() <= 1e-5, "{played:?}: {away}");
-                let hit = ask(&stage, |obstacle| {
-                    obstacle.cast_capsule(&capsule, [DVec3::X; 2], TargetMotion::Still)
-                });
+                let hit = cast(&stage, &capsule, DVec3::X, TargetMotion::Still);
                 let away = hit.map(|hit| hit.separation_normal);
                 let is_unit = away.is_some_and(|away| (away.length() - 1.0).abs() <= 1e-5);
                 assert!(is_unit, "{played:?}: {away:?} of {capsule:?}");
@@ -199,10 +196,8 @@ pub(crate) fn capsules_near_seams_and_edges_have_the_distance_of_brute_force() {
         for &played in kinds() {
             let stage = Stage::new(played).with_still(&two);
             let found = overlaps(&stage, &WorldCapsule { ends, radius });
-            let nearest = found
-                .iter()
-                .map(|c| c.distance)
-                .fold(f64::INFINITY, f64::min);
+            let distances = found.iter().map(|contact| contact.distance);
+            let nearest = distances.fold(f64::INFINITY, f64::min);
             assert_eq!(found.is_empty(), truth > radius, "{played:?}: {truth}");
             if truth <= radius {
                 near += 1;
@@ -220,17 +215,11 @@ pub(crate) fn tiny_motions_hit_nothing_and_end() {
     let shape = Shape::boxed(DVec3::splat(-1.0), DVec3::splat(1.0));
     for &played in kinds() {
         let stage = Stage::new(played).with_still(&shape);
-        for size in [6.9e-39, 5e-324, 1e-45, 1e-20] {
-            for direction in [DVec3::X, -DVec3::Y, DVec3::new(1.0, -1.0, 1.0)] {
-                let ball = WorldCapsule::ball(DVec3::Y * 2.0, 0.5);
-                let hits = ask(&stage, |obstacle| {
-                    [
-                        obstacle.cast_capsule(&ball, [direction * size; 2], TargetMotion::Still),
-                        obstacle.cast_capsule(&ball, [direction * size; 2], TargetMotion::Moving),
-                    ]
-                });
-                assert_eq!(hits, [None; 2], "{played:?}: {size}");
-            }
+        let directions = [DVec3::X, -DVec3::Y, DVec3::new(1.0, -1.0, 1.0)];
+        for (size, direction) in pairs([6.9e-39, 5e-324, 1e-45, 1e-20], directions) {
+            let ball = WorldCapsule::ball(DVec3::Y * 2.0, 0.5);
+            let hits = TARGETS.map(|target| cast(&stage, &ball, direction * size, target));
+            assert_eq!(hits, [None; 2], "{played:?}: {size}");
         }
     }
 }
@@ -243,16 +232,11 @@ pub(crate) fn obstacles_that_do_not_approach_are_not_hit() {
         stage.advance();
         let ball = WorldCapsule::ball(DVec3::Y * 1.6, 0.5);
         for way in [1.0, 1.5, 30.0] {
-            let hit = ask(&stage, |obstacle| {
-                obstacle.cast_capsule(&ball, [DVec3::Y * way; 2], TargetMotion::Moving)
-            });
+            let hit = cast(&stage, &ball, DVec3::Y * way, TargetMotion::Moving);
             assert_eq!(hit, None, "{played:?}: {way}");
         }
-        let hit = ask(&stage, |obstacle| {
-            obstacle.cast_capsule(&ball, [DVec3::ZERO; 2], TargetMotion::Moving)
-        });
-        assert!(hit.is_some(), "{played:?}: nothing where the box comes");
-        let hit = hit.unwrap();
+        let hit = cast(&stage, &ball, DVec3::ZERO, TargetMotion::Moving);
+        let hit = hit.unwrap_or_else(|| panic!("{played:?}: nothing where the box comes"));
         assert!(
             (hit.fraction - 0.1).abs() <= 1e-3,
             "{played:?}: {}",
@@ -262,12 +246,7 @@ pub(crate) fn obstacles_that_do_not_approach_are_not_hit() {
         stage.hold();
         let ball = WorldCapsule::ball(DVec3::Y * 3.0, 0.5);
         for way in [DVec3::ZERO, DVec3::Y, DVec3::X] {
-            let hits = ask(&stage, |obstacle| {
-                [
-                    obstacle.cast_capsule(&ball, [way; 2], TargetMotion::Still),
-                    obstacle.cast_capsule(&ball, [way; 2], TargetMotion::Moving),
-                ]
-            });
+            let hits = TARGETS.map(|target| cast(&stage, &ball, way, target));
             assert_eq!(hits, [None; 2], "{played:?}: {way}");
         }
     }
@@ -282,11 +261,8 @@ pub(crate) fn a_solid_around_the_core_reports_the_way_out() {
     ] {
         let found = overlaps(&stage, &WorldCapsule::ball(center, 0.5));
         assert_eq!(found.len(), 1);
-        assert!(
-            (found[0].distance - distance).abs() <= 1e-5,
-            "{:?}",
-            found[0]
-        );
+        let first = found[0];
+        assert!((first.distance - distance).abs() <= 1e-5, "{first:?}");
         assert!(
             (found[0].separation_normal(center) - out).length() <= 1e-5,
             "{:?}",

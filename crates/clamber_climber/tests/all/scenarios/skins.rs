@@ -3,12 +3,14 @@
 use core::f64::consts::TAU;
 
 use clamber_climber::ClimberMode::{Holding, Sliding, Standing};
-use clamber_climber::{ClimberConfig, ClimberEvent, ClimberInput};
+use clamber_climber::{ClimberConfig, ClimberInput};
 use clamber_surface::geometry::Similarity;
 use clamber_world::SurfaceKind;
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::stage::{IDLE, Run, Shape, Skin, Stage, jolt, one_kind, radians, walker_at, within};
+use crate::events::is_crushed;
+use crate::input::IDLE;
+use crate::stage::{Run, Shape, Skin, Stage, jolt, one_kind, radians, walker_at, within};
 
 /// A skin with two joints. The second joint moves. `share` is the weight of that joint at a rest position.
 fn skin(
@@ -61,11 +63,8 @@ pub(crate) fn breathing_ground_carries_for_a_minute() {
         let point = run.state().support.unwrap().attachment.material;
         for tick in 0..3600 {
             run.step(&IDLE);
-            let support = run.state().support.unwrap();
-            assert_eq!(
-                support.attachment.material, point,
-                "{name}, tick {tick}: steps off its point"
-            );
+            let now = run.state().support.unwrap().attachment.material;
+            assert_eq!(now, point, "{name}, tick {tick}: steps off its point");
             let away = run.position().distance(material(&run));
             within!((away - 0.32).abs(), 0.02, "{name}, tick {tick}: gap");
         }
@@ -85,11 +84,8 @@ pub(crate) fn feet_keep_their_barycentric_point_on_a_stretching_triangle() {
     let point = run.state().support.unwrap().attachment.material;
     for tick in 0..600 {
         run.step(&IDLE);
-        let support = run.state().support.unwrap();
-        assert_eq!(
-            support.attachment.material, point,
-            "tick {tick}: barycentric coordinates changed"
-        );
+        let now = run.state().support.unwrap().attachment.material;
+        assert_eq!(now, point, "tick {tick}: barycentric coordinates changed");
         let expected = stretches(run.stage.time()).transform_point3(rest);
         let off = run.feet().distance(expected);
         within!(off, 1e-3, "tick {tick}: {off} from its material");
@@ -110,11 +106,8 @@ fn tilts(angle: impl Fn(f64) -> f64 + 'static) -> Skin {
 }
 
 fn changes(run: &Run) -> usize {
-    run.trace
-        .modes
-        .windows(2)
-        .filter(|two| two[0] != two[1])
-        .count()
+    let pairs = run.trace.modes.windows(2);
+    pairs.filter(|two| two[0] != two[1]).count()
 }
 
 pub(crate) fn ground_that_trembles_about_the_limit_is_lost_once_at_most() {
@@ -132,12 +125,8 @@ pub(crate) fn ground_that_trembles_about_the_limit_is_lost_once_at_most() {
     });
     let mut run = on(skin, jolt(), DVec3::ZERO);
     run.steps(480, &IDLE);
-    assert_eq!(
-        changes(&run),
-        4,
-        "lost and found twice: {:?}",
-        run.trace.events
-    );
+    let events = &run.trace.events;
+    assert_eq!(changes(&run), 4, "lost and found twice: {events:?}");
     assert!(run.trace.modes.contains(&Sliding));
 }
 
@@ -164,29 +153,20 @@ pub(crate) fn closing_sheets_crush_the_climber_but_do_not_let_it_through() {
             let report = run.step(&IDLE);
             let lid = room(run.stage.time());
             let p = run.position();
-            assert!(p.y > 0.0, "{height}, tick {tick}: through the floor at {p}");
+            let case = format!("{height}, tick {tick} at {p}");
+            assert!(p.y > 0.0, "{case}: through the floor");
             // A crushed climber crouches, and has no upper ball then.
             let head = run.body().ends[1].y;
-            assert!(
-                head < lid,
-                "{height}, tick {tick}: through the lid {lid} at {p}"
-            );
-            within!(
-                p.x.abs() + p.z.abs(),
-                1e-3,
-                "{height}, tick {tick}: squeezed aside"
-            );
-            let is_crushed = |event: &ClimberEvent| matches!(event, ClimberEvent::Crushed { .. });
+            assert!(head < lid, "{case}: through the lid {lid}");
+            within!(p.x.abs() + p.z.abs(), 1e-3, "{case}: squeezed aside");
             if report.events.iter().any(is_crushed) && crushed.is_none() {
                 crushed = Some(lid);
             }
         }
         // The margin is .02 at either end, and an overlap up to the margin is not reported as crushing.
         let told = crushed.unwrap();
-        assert!(
-            told <= size && told >= size - 0.12,
-            "{height}: crushed at {told} of room"
-        );
+        let is_right = (size - 0.12..=size).contains(&told);
+        assert!(is_right, "{height}: crushed at {told} of room");
         assert_eq!(run.mode(), Standing, "{height}: {:?}", run.state());
         within!(run.feet().length(), 1e-3, "{height}: stands again");
     }
@@ -229,12 +209,8 @@ pub(crate) fn a_triangle_without_area_for_a_tick_keeps_the_climber() {
             for tick in 0..31 {
                 run.step(&input);
                 assert!(run.position().is_finite(), "{flat}, tick {tick}");
-                assert_eq!(
-                    run.mode(),
-                    mode,
-                    "{flat}, tick {tick}: {:?}",
-                    run.trace.events
-                );
+                let events = &run.trace.events;
+                assert_eq!(run.mode(), mode, "{flat}, tick {tick}: {events:?}");
             }
             let off = run.position().distance(before);
             within!(off, 1e-3, "{flat}, grips {grips}: off by {off}");

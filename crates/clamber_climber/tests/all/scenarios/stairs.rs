@@ -3,7 +3,8 @@
 use clamber_climber::ClimberMode::{Falling, Standing};
 use glam::DVec3;
 
-use crate::stage::{IDLE, Run, Shape, Stage, every, jolt, kinds, walk, walker_at, within};
+use crate::input::{IDLE, walk};
+use crate::stage::{Run, Shape, Stage, every, jolt, kinds, walker_at, within};
 
 /// Tick rates, hertz.
 const RATES: [u32; 4] = [60, 120, 240, 360];
@@ -21,16 +22,14 @@ pub(crate) fn stairs_are_walked_up_at_any_rate() {
                 run.step(&walk(DVec3::Z));
                 ticks += 1;
                 let p = run.position();
-                assert!(p.z > z, "{rate} Hz, {played:?}: stuck at {p}");
-                assert!(p.x.abs() <= 1e-6, "{rate} Hz, {played:?}: drifts to {p}");
-                assert_eq!(run.mode(), Standing, "{rate} Hz, {played:?}");
+                let told = format!("{rate} Hz, {played:?}, at {p}");
+                assert!(p.z > z, "{told}: stuck");
+                assert!(p.x.abs() <= 1e-6, "{told}: drifts");
+                assert_eq!(run.mode(), Standing, "{told}");
                 z = p.z;
                 // The way leads from 1 m before the first riser to the tenth.
                 let ideal = (1.0 + 9.0 * 0.3) / 4.0;
-                assert!(
-                    f64::from(ticks) * dt <= 1.5 * ideal,
-                    "{rate} Hz, {played:?}: slow at {p}"
-                );
+                assert!(f64::from(ticks) * dt <= 1.5 * ideal, "{told}: slow");
             }
             run.sound()
         });
@@ -40,19 +39,16 @@ pub(crate) fn stairs_are_walked_up_at_any_rate() {
 pub(crate) fn stairs_block_a_climber_that_cannot_step() {
     for rate in RATES {
         every(0.0, |played| {
-            let dt = 1.0 / f64::from(rate);
             let mut config = walker_at(4.0);
             config.ground.step_height = 0.0;
             let stairs = Shape::stairs(10, 0.3, 0.3, 2.0);
-            let stage = Stage::at(played, dt, DVec3::ZERO).with_still(&stairs);
+            let stage = Stage::at_rate(played, f64::from(rate)).with_still(&stairs);
             let mut run = Run::new(stage, config, -DVec3::Z).settle();
             run.steps(rate, &walk(DVec3::Z));
             let end = run.feet();
-            assert!(
-                (end.z + 0.32).abs() <= 1.1e-2,
-                "{rate} Hz, {played:?}: ends at {end}"
-            );
-            assert!(end.y.abs() <= 1e-4, "{rate} Hz, {played:?}: ends at {end}");
+            let told = format!("{rate} Hz, {played:?}: ends at {end}");
+            assert!((end.z + 0.32).abs() <= 1.1e-2, "{told}");
+            assert!(end.y.abs() <= 1e-4, "{told}");
             run.sound()
         });
     }
@@ -66,20 +62,15 @@ fn wall(z: f64) -> Shape {
 pub(crate) fn a_wall_alongside_gives_no_speed() {
     for rate in RATES {
         every(0.0, |played| {
-            let dt = 1.0 / f64::from(rate);
             let want = DVec3::new(5.0, 0.0, -1.0);
-            let stage = Stage::at(played, dt, DVec3::ZERO)
+            let stage = Stage::at_rate(played, f64::from(rate))
                 .with_still(&Shape::floor(20.0))
                 .with_still(&wall(-0.32));
             let mut run = Run::new(stage, walker_at(want.length()), DVec3::ZERO).settle();
             run.steps(rate, &walk(want.normalize()));
             let off = run.feet().distance(DVec3::X * 5.0);
-            within!(
-                off,
-                1e-2,
-                "{rate} Hz, {played:?}: {} is off by {off}",
-                run.feet()
-            );
+            let feet = run.feet();
+            within!(off, 1e-2, "{rate} Hz, {played:?}: {feet} is off by {off}");
             assert!(run.trace.always(Standing));
             run.sound()
         });
@@ -98,20 +89,13 @@ fn bumps(width: f64, height: f64, every: f64, count: u32) -> Shape {
 pub(crate) fn bumps_are_walked_over() {
     for (width, height, distance, count) in [(0.05, 0.01, 0.5, 20), (0.3, 0.1, 2.0, 5)] {
         every(0.0, |played| {
-            let stage = Stage::new(played).with_still(&bumps(width, height, distance, count));
-            let mut run = Run::new(stage, walker_at(3.0), DVec3::ZERO).settle();
+            let shape = bumps(width, height, distance, count);
+            let mut run = Run::on(played, &shape, walker_at(3.0), DVec3::ZERO);
             run.steps(240, &walk(DVec3::X));
             assert!(run.trace.always(Standing), "{played:?}, {height} m");
-            assert!(
-                run.feet().x >= 11.0,
-                "{played:?}, {height} m: to {}",
-                run.feet()
-            );
-            assert!(
-                run.feet().z.abs() <= 1e-4,
-                "{played:?}, {height} m: to {}",
-                run.feet()
-            );
+            let feet = run.feet();
+            assert!(feet.x >= 11.0, "{played:?}, {height} m: to {feet}");
+            assert!(feet.z.abs() <= 1e-4, "{played:?}, {height} m: to {feet}");
             run.sound()
         });
     }
@@ -120,15 +104,10 @@ pub(crate) fn bumps_are_walked_over() {
 pub(crate) fn stairs_with_too_narrow_treads_are_a_wall() {
     every(0.0, |played| {
         let stairs = Shape::stairs(10, 0.3, 0.05, 2.0);
-        let stage = Stage::new(played).with_still(&stairs);
-        let mut run = Run::new(stage, walker_at(3.0), -DVec3::Z).settle();
+        let mut run = Run::on(played, &stairs, walker_at(3.0), -DVec3::Z);
         run.steps(180, &walk(DVec3::Z));
-        let highest = run
-            .trace
-            .positions
-            .iter()
-            .map(|p| p.y - 0.32)
-            .fold(0.0, f64::max);
+        let heights = run.trace.heights().map(|y| y - 0.32);
+        let highest = heights.fold(0.0, f64::max);
         assert!(highest < 0.35, "{played:?}: climbs to {highest}");
         run.sound()
     });
@@ -225,19 +204,14 @@ fn acute() -> Shape {
 
 pub(crate) fn an_acute_corner_below_a_ceiling_stops_gently() {
     every(0.0, |played| {
-        let stage = Stage::new(played).with_still(&acute());
-        let mut run = Run::new(stage, walker_at(3.0), -DVec3::X).settle();
+        let mut run = Run::on(played, &acute(), walker_at(3.0), -DVec3::X);
         run.steps(120, &walk(DVec3::X));
         let rest = run.position();
         for _ in 0..60 {
             run.step(&walk(DVec3::X));
             let jump = run.position().distance(rest);
-            within!(
-                jump,
-                1e-3,
-                "{played:?}: jumps by {jump} to {}",
-                run.position()
-            );
+            let place = run.position();
+            within!(jump, 1e-3, "{played:?}: jumps by {jump} to {place}");
         }
         // The upper ball touches the ceiling, which falls by 0.5 m per metre.
         let top = DVec3::new(rest.x, rest.y + 1.35, 0.0);
@@ -253,8 +227,7 @@ pub(crate) fn an_acute_corner_below_a_ceiling_stops_gently() {
 pub(crate) fn a_hollow_box_is_solid_from_within() {
     every(0.0, |played| {
         let hollow = Shape::boxed(DVec3::new(-2.0, 0.0, -2.0), DVec3::new(2.0, 3.0, 2.0));
-        let stage = Stage::new(played).with_still(&hollow);
-        let mut run = Run::new(stage, walker_at(4.0), DVec3::ZERO).settle();
+        let mut run = Run::on(played, &hollow, walker_at(4.0), DVec3::ZERO);
         for direction in [DVec3::X, DVec3::new(1.0, 0.0, 1.0), -DVec3::Z, -DVec3::X] {
             run.steps(90, &walk(direction));
             let end = run.feet();

@@ -4,8 +4,9 @@ use clamber_climber::ClimberMode::Standing;
 use clamber_world::rapier3d::prelude::ColliderBuilder;
 use glam::DVec3;
 
+use crate::input::{IDLE, walk};
 use crate::stage::{
-    IDLE, Played, Run, Shape, Stage, every, jolt, kinds, radians, shifted, walk, walker_at, within,
+    Played, Run, Shape, Stage, every, jolt, kinds, radians, shifted, walker_at, within,
 };
 
 pub(crate) fn an_overlap_is_left_in_one_tick() {
@@ -53,11 +54,9 @@ pub(crate) fn two_walls_through_the_body_lift_it_out_and_let_it_go() {
         for _ in 0..10 {
             run.step(&IDLE);
             let p = run.position();
-            assert!(
-                p.y >= height - 1e-6,
-                "{played:?}: sinks to {p} from {height}"
-            );
-            assert!(p.x.abs() <= 1e-3 && p.z.abs() <= 1e-3, "{played:?}: {p}");
+            let told = format!("{played:?}: {p} from {height}");
+            assert!(p.y >= height - 1e-6, "{told}: sinks");
+            assert!(p.x.abs() <= 1e-3 && p.z.abs() <= 1e-3, "{told}");
             height = p.y;
         }
         assert!(run.feet().y > 0.5, "{played:?}: {}", run.feet());
@@ -79,11 +78,8 @@ pub(crate) fn six_hundred_metres_a_second_stop_at_a_box() {
         run.step(&IDLE);
         let off = run.position().x - 4.68;
         within!(off.abs(), 1e-6, "{played:?}: {off}");
-        assert!(
-            run.state().velocity.length() <= 1e-3,
-            "{:?}",
-            run.state().velocity
-        );
+        let velocity = run.state().velocity;
+        assert!(velocity.length() <= 1e-3, "{velocity:?}");
         run.sound()
     });
 }
@@ -115,16 +111,10 @@ pub(crate) fn a_wall_pushes_an_idle_climber() {
                 run.step(&IDLE);
                 let face = -1.0 + speed * run.stage.time();
                 let gap = run.position().x - face - 0.32;
-                within!(
-                    -gap,
-                    2e-2,
-                    "{played:?} at {speed} m/s, tick {tick}: gap {gap}"
-                );
                 let p = run.position();
-                assert!(
-                    (p.y - 0.32).abs() <= 1e-3 && p.z.abs() <= 1e-3,
-                    "{played:?}: {p}"
-                );
+                let told = format!("{played:?} at {speed} m/s, tick {tick} at {p}");
+                within!(-gap, 2e-2, "{told}: gap {gap}");
+                assert!((p.y - 0.32).abs() <= 1e-3 && p.z.abs() <= 1e-3, "{told}");
             }
             assert!(run.position().x > 1.0);
             run.sound()
@@ -163,24 +153,18 @@ pub(crate) fn a_slow_wall_pushes_off_an_edge() {
                 .with_still(&Shape::floor(1.0))
                 .with(&wall, move |time| shifted(DVec3::X * (speed * time)));
             let mut run = Run::new(stage, jolt(), DVec3::ZERO).settle();
+            let told = format!("{played:?} at {speed} m/s");
             let mut ticks = 0;
             while run.mode() == Standing {
                 run.step(&IDLE);
                 ticks += 1;
                 let p = run.position();
                 // At the edge the climber rolls over, as far as it can stand there.
-                assert!(
-                    p.x <= 1.0 + 0.32,
-                    "{played:?} at {speed} m/s: stands on nothing at {p}"
-                );
-                assert!(ticks < 2000, "{played:?} at {speed} m/s: is not pushed");
+                assert!(p.x <= 1.0 + 0.32, "{told}: stands on nothing at {p}");
+                assert!(ticks < 2000, "{told}: is not pushed");
             }
             run.steps(60, &IDLE);
-            assert!(
-                run.feet().y < -1.0,
-                "{played:?} at {speed} m/s: {}",
-                run.feet()
-            );
+            assert!(run.feet().y < -1.0, "{told}: {}", run.feet());
             run.sound();
         }
     }
@@ -222,11 +206,8 @@ pub(crate) fn ground_moves_on_below_a_climber_held_back_by_a_wall() {
             // from rounding does not matter.
             let left = ((10.7 / speed + 1.0) / run.stage.dt) as u32 - ticks;
             run.steps(left, &IDLE);
-            assert!(
-                run.feet().y < -1.5,
-                "{played:?} at {speed} m/s: {}",
-                run.feet()
-            );
+            let feet = run.feet();
+            assert!(feet.y < -1.5, "{played:?} at {speed} m/s: {feet}");
             run.sound()
         });
     }

@@ -1,10 +1,13 @@
 //! Two nearly opposite walls that close on the climber: a wedge that it cannot slip out of.
 
-use clamber_climber::{ClimberConfig, ClimberEvent};
+use clamber_climber::ClimberConfig;
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use glam::DVec3;
 
-use crate::stage::{IDLE, Run, Shape, Stage, kinds, radians, within};
+use crate::cases::triples;
+use crate::events::is_crushed;
+use crate::input::IDLE;
+use crate::stage::{Run, Shape, Stage, kinds, radians, within};
 
 /// Half of the distance between the walls at a time: finally .15 m less than the ball needs.
 fn half_gap(closing: f64, time: f64) -> f64 {
@@ -32,31 +35,26 @@ fn wedge(stage: Stage, angle: f64, closing: f64) -> Stage {
 /// Checks the result for a climber between the walls at each angle and speed, on each kind of obstacle. Kinds are not
 /// compared: rounding of a wall moves the place where both walls touch the ball by a hundred times as much.
 fn in_wedges(check: impl Fn(&Pressed)) {
-    for closing in [0.4, 2.0] {
-        for degrees in [0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 13.0] {
-            for &played in kinds() {
-                let mut config = ClimberConfig::walker();
-                config.ground.throw_acceleration = f64::INFINITY;
-                let stage = wedge(Stage::new(played), radians(degrees), closing);
-                let mut run = Run::new(stage, config, DVec3::ZERO).settle();
-                let mut pressed = Pressed {
-                    case: format!("{played:?}, {degrees} degrees at {closing} m/s"),
-                    degrees,
-                    lacking: config.body.radius - half_gap(closing, 1.0),
-                    crushed: false,
-                    longest: 0.0,
-                };
-                for _ in 0..60 {
-                    let before = run.position();
-                    let report = run.step(&IDLE);
-                    let is_crushed =
-                        |event: &ClimberEvent| matches!(event, ClimberEvent::Crushed { .. });
-                    pressed.crushed |= report.events.iter().any(is_crushed);
-                    pressed.longest = pressed.longest.max(run.position().distance(before));
-                }
-                check(&pressed);
-            }
+    let angles = [0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 13.0];
+    for (closing, degrees, &played) in triples([0.4, 2.0], angles, kinds()) {
+        let mut config = ClimberConfig::walker();
+        config.ground.throw_acceleration = f64::INFINITY;
+        let stage = wedge(Stage::new(played), radians(degrees), closing);
+        let mut run = Run::new(stage, config, DVec3::ZERO).settle();
+        let mut pressed = Pressed {
+            case: format!("{played:?}, {degrees} degrees at {closing} m/s"),
+            degrees,
+            lacking: config.body.radius - half_gap(closing, 1.0),
+            crushed: false,
+            longest: 0.0,
+        };
+        for _ in 0..60 {
+            let before = run.position();
+            let report = run.step(&IDLE);
+            pressed.crushed |= report.events.iter().any(is_crushed);
+            pressed.longest = pressed.longest.max(run.position().distance(before));
         }
+        check(&pressed);
     }
 }
 

@@ -11,6 +11,7 @@ use glam::DVec3;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::input::IDLE;
 use crate::random::scene::Scene;
 
 /// A value after it was written as JSON and read again.
@@ -140,7 +141,7 @@ fn a_custom_mode_continues_with_the_same_bits() {
     let input = ClimberInput {
         actions: 1 << 31,
         aim: DVec3::new(0.1, 1.7, -0.3),
-        ..ClimberInput::IDLE
+        ..IDLE
     };
     let mut rose = 0;
     for tick in 0..90 {

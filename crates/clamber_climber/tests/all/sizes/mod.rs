@@ -5,10 +5,11 @@ mod scenes;
 
 use clamber_climber::{Climber, ClimberConfig};
 use glam::DVec3;
+
+use crate::cases::pairs;
+use crate::numbers::{Unit, numbers};
 use play::play;
 use scenes::{person, scenes};
-
-use crate::numbers::{Unit, numbers};
 
 /// Sizes of the climber, relative to the usual one.
 const SIZES: [f64; 4] = [0.02, 0.1, 10.0, 100.0];
@@ -18,24 +19,22 @@ const ROUNDING: f64 = 1e-6;
 
 #[test]
 fn every_number_scales_by_its_unit() {
-    for size in SIZES {
-        for mut config in [person(), ClimberConfig::walker()] {
-            let mut scaled = config.scaled(size);
-            assert_eq!(scaled.gravity, config.gravity);
-            assert_eq!(scaled.body.others, config.body.others);
-            for (before, after) in numbers(&mut config).iter().zip(numbers(&mut scaled)) {
-                let Unit { metres, seconds } = before.unit;
-                let power = f64::from(metres) + 0.5 * f64::from(seconds);
-                let due = *before.value * libm::pow(size, power);
-                let told = format!(
-                    "size {size}, {}: {} became {}",
-                    before.name, before.value, after.value
-                );
-                assert!(
-                    (*after.value - due).abs() <= 1e-14 * due,
-                    "{told}, not {due}"
-                );
-            }
+    for (size, mut config) in pairs(SIZES, [person(), ClimberConfig::walker()]) {
+        let mut scaled = config.scaled(size);
+        assert_eq!(scaled.gravity, config.gravity);
+        assert_eq!(scaled.body.others, config.body.others);
+        for (before, after) in numbers(&mut config).iter().zip(numbers(&mut scaled)) {
+            let Unit { metres, seconds } = before.unit;
+            let power = f64::from(metres) + 0.5 * f64::from(seconds);
+            let due = *before.value * libm::pow(size, power);
+            let told = format!(
+                "size {size}, {}: {} became {}",
+                before.name, before.value, after.value
+            );
+            assert!(
+                (*after.value - due).abs() <= 1e-14 * due,
+                "{told}, not {due}"
+            );
         }
     }
 }
@@ -99,17 +98,15 @@ fn every_number_matters_in_a_scene() {
 #[test]
 fn the_result_of_a_size_out_of_range_is_refused() {
     let sizes = [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
-    for size in sizes {
-        for config in [person(), ClimberConfig::walker()] {
-            let refused = Climber::new(config.scaled(size), DVec3::ZERO);
-            assert!(refused.is_err(), "size {size}");
-            let mut climber = Climber::new(config, DVec3::ZERO).unwrap();
-            assert!(
-                climber.set_config(config.scaled(size)).is_err(),
-                "size {size}"
-            );
-            assert_eq!(*climber.config(), config);
-        }
+    for (size, config) in pairs(sizes, [person(), ClimberConfig::walker()]) {
+        let refused = Climber::new(config.scaled(size), DVec3::ZERO);
+        assert!(refused.is_err(), "size {size}");
+        let mut climber = Climber::new(config, DVec3::ZERO).unwrap();
+        assert!(
+            climber.set_config(config.scaled(size)).is_err(),
+            "size {size}"
+        );
+        assert_eq!(*climber.config(), config);
     }
 }
 

@@ -1,14 +1,13 @@
 //! Plays a scene at a size: lengths are scaled by the size, speeds and times by its square root.
 
 use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, ClimberMode, ClimberState};
-use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceTag;
-use clamber_surface::rig::Palette;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DQuat, DVec3};
 
 use crate::moving::MovingHalfSpace;
-use crate::scene::{STONE, cuboid};
+use crate::scene::{STONE, cuboid, rest};
 
 /// A scene at size 1: a box, a half-space that may move, and a climber.
 pub(crate) struct Scene {
@@ -104,8 +103,7 @@ pub(crate) fn play(scene: &Scene, config: ClimberConfig, size: f64, rate: f64) -
             rotation: DQuat::IDENTITY,
             scale: size,
         };
-        let palette = Palette::from_matrices([Affine::IDENTITY]);
-        surface.place(&palette, place).unwrap();
+        surface.place(&rest(), place).unwrap();
         surface
     });
     let (point, normal, tag) = scene.half_space;

@@ -8,14 +8,9 @@ use clamber_climber::ClimberMode::{
 use clamber_climber::{ClimberConfig, ClimberInput};
 use glam::DVec3;
 
+use crate::input::{HOLD, IDLE, grip_walk, walk};
 use crate::scene::{FUR, STONE};
 use crate::sizes::play::Scene;
-
-/// No input.
-const IDLE: ClimberInput = ClimberInput::IDLE;
-
-/// Input that only holds the grip.
-const HOLD: ClimberInput = ClimberInput { grip: true, ..IDLE };
 
 /// A climber with every ability on. None of its times is a whole number of ticks, so that rounding decides nothing.
 pub(crate) fn person() -> ClimberConfig {
@@ -63,13 +58,6 @@ const STAGE: Scene = Scene {
     shows: Standing,
 };
 
-fn walks(direction: DVec3) -> ClimberInput {
-    ClimberInput {
-        walk: direction,
-        ..IDLE
-    }
-}
-
 /// A box of 8 by 8 by 16 m with an edge of its top at x and y, to the right of the edge (`side` 1) or to its left (-1).
 const fn boxed(x: f64, y: f64, side: f64) -> Option<[DVec3; 2]> {
     let center = DVec3::new(x + 4.0 * side, y - 4.0, 0.0);
@@ -106,7 +94,7 @@ pub(crate) fn scenes() -> Vec<Scene> {
         Scene {
             name: "walks up a curb, and stops",
             cuboid: boxed(1.0, 0.41, 1.0),
-            input: |time| walks(DVec3::X * if time < 1.2 { 1.0 } else { 0.0 }),
+            input: |time| walk(DVec3::X * if time < 1.2 { 1.0 } else { 0.0 }),
             ..STAGE
         },
         Scene {
@@ -118,21 +106,21 @@ pub(crate) fn scenes() -> Vec<Scene> {
             // At 30 Hz, the climber moves in a tick from above the step to beyond its edge.
             cuboid: boxed(0.75, 0.18, -1.0),
             position: DVec3::new(-0.3, 0.58, 0.0),
-            input: |_| walks(DVec3::X),
+            input: |_| walk(DVec3::X),
             seconds: 0.5,
             ..STAGE
         },
         Scene {
             name: "crouches below a ceiling",
             cuboid: boxed(-4.0, 9.6, 1.0),
-            input: |_| walks(DVec3::Z),
+            input: |_| walk(DVec3::Z),
             ..STAGE
         },
         Scene {
             name: "stands on a slope",
             half_space: (DVec3::ZERO, DVec3::new(-0.731, 0.682, 0.0), STONE),
             position: DVec3::new(-0.3, 0.28, 0.0),
-            input: |_| walks(DVec3::new(0.3, 0.0, 0.2)),
+            input: |_| walk(DVec3::new(0.3, 0.0, 0.2)),
             ..STAGE
         },
         Scene {
@@ -146,7 +134,7 @@ pub(crate) fn scenes() -> Vec<Scene> {
             name: "jumps, steers and lands",
             input: |time| ClimberInput {
                 jump_held: time < 0.45,
-                ..walks(DVec3::new(0.6, 0.0, 0.3))
+                ..walk(DVec3::new(0.6, 0.0, 0.3))
             },
             jump: Some(0.3),
             shows: Falling,
@@ -231,13 +219,12 @@ pub(crate) fn scenes() -> Vec<Scene> {
         },
         Scene {
             name: "goes along a ledge",
-            input: |time| ClimberInput {
-                walk: if time < 2.7 {
+            input: |time| {
+                grip_walk(if time < 2.7 {
                     DVec3::X * 0.01
                 } else {
                     DVec3::Z
-                },
-                ..HOLD
+                })
             },
             seconds: 3.5,
             ..LEDGE
@@ -257,10 +244,7 @@ pub(crate) fn scenes() -> Vec<Scene> {
             name: "catches a ledge in a fall",
             position: DVec3::new(-0.65, 0.0, 0.1),
             velocity: DVec3::new(0.0, -12.5, 0.0),
-            input: |_| ClimberInput {
-                walk: DVec3::X * 0.01,
-                ..HOLD
-            },
+            input: |_| grip_walk(DVec3::X * 0.01),
             seconds: 3.0,
             ..LEDGE
         },

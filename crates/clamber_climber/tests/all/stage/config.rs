@@ -26,6 +26,14 @@ pub(crate) fn walker_at(speed: f64) -> ClimberConfig {
     config
 }
 
+/// A climber with every ability that never tires.
+pub(crate) fn tireless() -> ClimberConfig {
+    ClimberConfig {
+        stamina: None,
+        ..ClimberConfig::colossus_climber()
+    }
+}
+
 pub(crate) fn radians(degrees: f64) -> f64 {
     degrees * core::f64::consts::PI / 180.0
 }

@@ -13,9 +13,9 @@ mod skin;
 
 pub(crate) use alike::{Allowed, assert_alike};
 pub(crate) use bodies::Bodies;
-pub(crate) use config::{jolt, radians, walker_at};
+pub(crate) use config::{jolt, radians, tireless, walker_at};
 pub(crate) use reached::{demand, within};
-pub(crate) use run::{IDLE, JUMP, Run, Trace, every, walk};
+pub(crate) use run::{Run, Trace, every};
 pub(crate) use setting::{Setting, kinds, one_kind, play};
 pub(crate) use shape::Shape;
 pub(crate) use skin::{Pose, Skin};
@@ -86,6 +86,10 @@ pub(crate) const TICK: f64 = 1.0 / 60.0;
 impl Stage {
     pub(crate) fn new(played: Played) -> Self {
         Self::at(played, TICK, DVec3::ZERO)
+    }
+
+    pub(crate) fn at_rate(played: Played, rate: f64) -> Self {
+        Self::at(played, 1.0 / rate, DVec3::ZERO)
     }
 
     pub(crate) fn at(played: Played, dt: f64, origin: DVec3) -> Self {
@@ -270,18 +274,10 @@ impl Stage {
     pub(crate) fn obstacles<T>(&self, ask: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T) -> T {
         let there = self.place();
         self.in_world(|obstacles| {
-            let seen: Vec<_> = obstacles
-                .iter()
-                .map(|(id, inner)| {
-                    (
-                        *id,
-                        Elsewhere {
-                            inner: *inner,
-                            there,
-                        },
-                    )
-                })
-                .collect();
+            let mut seen = Vec::new();
+            for &(id, inner) in obstacles {
+                seen.push((id, Elsewhere { inner, there }));
+            }
             ask(&listed(&seen))
         })
     }

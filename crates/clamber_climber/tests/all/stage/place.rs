@@ -92,45 +92,33 @@ impl Place {
         report
     }
 
-    fn event(&self, event: ClimberEvent) -> ClimberEvent {
-        let scale = self.scale;
-        match event {
-            ClimberEvent::Landed { obstacle, speed } => ClimberEvent::Landed {
-                obstacle,
-                speed: speed * scale,
-            },
-            ClimberEvent::Thrown { acceleration, from } => ClimberEvent::Thrown {
-                acceleration: acceleration * scale,
-                from: self.attachment(from),
-            },
-            ClimberEvent::LostFooting { from } => ClimberEvent::LostFooting {
-                from: self.attachment(from),
-            },
-            ClimberEvent::KnockedOff { from, by } => ClimberEvent::KnockedOff {
-                from: self.attachment(from),
-                by,
-            },
-            ClimberEvent::Tumbled { from, by } => ClimberEvent::Tumbled {
-                from: from.map(|from| self.attachment(from)),
-                by,
-            },
-            ClimberEvent::Grabbed { obstacle, point } => ClimberEvent::Grabbed {
-                obstacle,
-                point: self.point(point),
-            },
-            ClimberEvent::LedgeCaught { obstacle, point } => ClimberEvent::LedgeCaught {
-                obstacle,
-                point: self.point(point),
-            },
-            ClimberEvent::ShakenOff { shake, from } => ClimberEvent::ShakenOff {
-                shake: shake * scale,
-                from: self.attachment(from),
-            },
-            ClimberEvent::Crushed { depth } => ClimberEvent::Crushed {
-                depth: depth * scale,
-            },
-            other => other,
+    fn event(&self, mut event: ClimberEvent) -> ClimberEvent {
+        match &mut event {
+            ClimberEvent::Landed { speed: number, .. }
+            | ClimberEvent::Crushed { depth: number } => *number *= self.scale,
+            ClimberEvent::Thrown {
+                acceleration: number,
+                from,
+            }
+            | ClimberEvent::ShakenOff {
+                shake: number,
+                from,
+            } => {
+                *number *= self.scale;
+                *from = self.attachment(*from);
+            }
+            ClimberEvent::LostFooting { from } | ClimberEvent::KnockedOff { from, .. } => {
+                *from = self.attachment(*from);
+            }
+            ClimberEvent::Tumbled { from, .. } => {
+                *from = from.map(|from| self.attachment(from));
+            }
+            ClimberEvent::Grabbed { point, .. } | ClimberEvent::LedgeCaught { point, .. } => {
+                *point = self.point(*point);
+            }
+            _ => {}
         }
+        event
     }
 
     /// Scales a configuration's lengths, speeds and accelerations. Times, angles and shares stay.

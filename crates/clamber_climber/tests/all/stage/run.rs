@@ -9,7 +9,9 @@ use glam::DVec3;
 
 use super::place::Elsewhere;
 use super::setting::{kinds, remember};
-use super::{Played, Reach, Stage, listed, within};
+use super::{Played, Reach, Shape, Stage, listed, within};
+use crate::events::is_crushed;
+use crate::input::IDLE;
 
 /// A recorded run, tick by tick, in the scenario's units and frame.
 #[derive(Clone, Debug, Default)]
@@ -54,19 +56,6 @@ pub(crate) type Rule = Box<dyn Fn(&ContactQuery<'_>) -> ContactRule>;
 /// Id of the other climber on the stage.
 const FRIEND: ObstacleId = ObstacleId(99);
 
-/// No input.
-pub(crate) const IDLE: ClimberInput = ClimberInput::IDLE;
-
-pub(crate) fn walk(direction: DVec3) -> ClimberInput {
-    ClimberInput {
-        walk: direction,
-        ..IDLE
-    }
-}
-
-/// Input that only jumps.
-pub(crate) const JUMP: ClimberInput = ClimberInput { jump: true, ..IDLE };
-
 impl Run {
     /// A climber with its feet at a position on the stage.
     pub(crate) fn new(stage: Stage, config: ClimberConfig, feet: DVec3) -> Self {
@@ -89,6 +78,12 @@ impl Run {
             ..run.state
         });
         run
+    }
+
+    /// A climber that has settled on a shape at rest.
+    pub(crate) fn on(played: Played, shape: &Shape, config: ClimberConfig, feet: DVec3) -> Self {
+        let stage = Stage::new(played).with_still(shape);
+        Self::new(stage, config, feet).settle()
     }
 
     /// Sets the rule for contacts.
@@ -137,13 +132,11 @@ impl Run {
                 .iter()
                 .map(|(id, obstacle)| (*id, around(*obstacle)))
                 .collect();
-            let seen: Vec<_> = around
-                .iter()
-                .map(|(id, inner)| {
-                    let inner = inner.as_ref();
-                    (*id, Elsewhere { inner, there })
-                })
-                .collect();
+            let mut seen = Vec::new();
+            for (id, inner) in &around {
+                let inner = inner.as_ref();
+                seen.push((*id, Elsewhere { inner, there }));
+            }
             climber.step(&input, &listed(&seen), dt).unwrap()
         });
         self.note(report)
@@ -215,11 +208,11 @@ impl Run {
                 break;
             }
         }
+        let state = self.state();
         assert_eq!(
-            self.mode(),
+            state.mode,
             ClimberMode::Standing,
-            "did not settle: {:?}",
-            self.state()
+            "did not settle: {state:?}"
         );
         self.trace = Trace::default();
         self
@@ -307,14 +300,14 @@ impl Trace {
             "{} m below the skin width",
             self.penetration
         );
-        let strange = self.events.iter().find(|event| {
-            matches!(
-                event,
-                ClimberEvent::NotFinite | ClimberEvent::Crushed { .. }
-            )
-        });
+        let mut events = self.events.iter();
+        let strange = events.find(|event| **event == ClimberEvent::NotFinite || is_crushed(event));
         assert_eq!(strange, None);
         assert!(self.positions.iter().all(|p| p.is_finite()));
+    }
+
+    pub(crate) fn heights(&self) -> impl Iterator<Item = f64> {
+        self.positions.iter().map(|position| position.y)
     }
 
     pub(crate) fn always(&self, mode: ClimberMode) -> bool {
@@ -357,19 +350,12 @@ pub(crate) fn every(chord: f64, play: impl Fn(Played) -> Trace) {
     let first = kinds()[0];
     let trace = play(first);
     for &played in &kinds()[1..] {
-        let tolerance = if played == Played::Body {
-            SAME + chord
-        } else {
-            SAME
-        };
+        let tolerance = SAME + if played == Played::Body { chord } else { 0.0 };
         let other = play(played);
         let (apart, tick) = trace.apart(&other);
         let name = format!("{played:?}");
-        within!(
-            apart,
-            tolerance,
-            "{name}: {apart} m from {first:?} at tick {tick}"
-        );
+        let told = format!("{name}: {apart} m from {first:?} at tick {tick}");
+        within!(apart, tolerance, "{told}");
         trace.assert_same_modes(&other, &name);
         other.assert_same_modes(&trace, &name);
     }

@@ -1,7 +1,9 @@
 //! Triangle meshes of a few faces.
 
-use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
+use clamber_surface::geometry::Similarity;
 use glam::DVec3;
+
+use super::turned;
 
 /// A mesh in its own space; faces are counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default)]
@@ -154,10 +156,7 @@ impl Shape {
 
     #[must_use]
     pub(crate) fn turned(self, axis: DVec3, angle: f64) -> Self {
-        self.placed(&Similarity {
-            rotation: rotation_from_axis_angle(axis, angle),
-            ..Similarity::IDENTITY
-        })
+        self.placed(&turned(axis, angle))
     }
 
     #[must_use]

@@ -124,17 +124,6 @@ fn enters(from: DVec3, way: DVec3, radius: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn distance(place: DVec3, body: &WorldCapsule) -> f64 {
-        let axis = body.ends[1] - body.ends[0];
-        let length = axis.length_squared();
-        let share = if length > 0.0 {
-            ((place - body.ends[0]).dot(axis) / length).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        place.distance(body.ends[0] + axis * share)
-    }
-
     #[test]
     fn a_ball_touches_a_body_first_where_a_search_finds_it() {
         let mut random = fastrand::Rng::with_seed(1);
@@ -154,7 +143,10 @@ mod tests {
                 radius: 0.3,
             };
             let radius = 0.1 + 0.01 * f64::from(case % 90);
-            let gap = |share: f64| distance(from + way * share, &body) - 0.3 - radius;
+            let gap = |share: f64| {
+                let place = from + way * share;
+                place.distance(body.nearest_on_axis(place)) - 0.3 - radius
+            };
             // The distance from a convex body is convex along a line. Ternary search finds its minimum, and bisection
             // the first touch.
             let (mut low, mut high) = (0.0, 1.0);

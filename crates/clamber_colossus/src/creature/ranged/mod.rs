@@ -12,11 +12,11 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::report::AttackPhase;
-use super::state::FARTHEST_COORDINATE;
+use super::state::{FARTHEST_COORDINATE, is_far};
 use super::{Creature, Surroundings};
-use crate::brain::{Attack, StateAction, StateId, WaveOf};
+use crate::brain::{Attack, Shot, StateAction, StateId, Wave, WaveOf};
 use crate::feet::Carried;
-use crate::kind::{CreatureKind, Strike};
+use crate::kind::CreatureKind;
 use beam::Ray;
 use shot::ShotState;
 use wave::WaveState;
@@ -91,29 +91,23 @@ impl Ranged {
 
     /// True if a creature of this kind can have these waves, shots and beam.
     pub(super) fn fits(&self, kind: &CreatureKind) -> bool {
-        let is_near =
-            |place: DVec3| place.is_finite() && place.abs().max_element() <= FARTHEST_COORDINATE;
-        let beam = self
-            .beam
-            .is_none_or(|beam| is_near(beam.from) && (beam.direction.length() - 1.0).abs() < 1e-6);
-        is_near(self.mark)
-            && beam
+        !is_far(self.mark)
+            && self.beam.is_none_or(|beam| {
+                !is_far(beam.from) && (beam.direction.length() - 1.0).abs() < 1e-6
+            })
             && self.next_shot <= u64::MAX / 2
             && self.waves.len().max(self.shots.len()) <= MOST_AT_A_TIME
             && self.waves.iter().all(|wave| {
-                let attack = attack_of(kind, wave.state);
-                let reach = (0.0..=FARTHEST_COORDINATE).contains(&wave.reach);
-                is_near(wave.place)
-                    && reach
-                    && attack.is_some_and(|one| one.wave_of(wave.of).is_some())
+                !is_far(wave.place)
+                    && (0.0..=FARTHEST_COORDINATE).contains(&wave.reach)
+                    && wave_of(kind, wave).is_some()
             })
             && self.shots.is_sorted_by(|a, b| a.number < b.number)
             && self.shots.iter().all(|shot| {
-                let attack = attack_of(kind, shot.state);
-                is_near(shot.place)
+                !is_far(shot.place)
                     && shot.number < self.next_shot
                     && shot::is_reached(shot.velocity)
-                    && attack.is_some_and(|one| one.shot.is_some())
+                    && shot_of(kind, shot).is_some()
             })
     }
 
@@ -125,18 +119,11 @@ impl Ranged {
         same: impl Fn(StateId) -> Option<StateId>,
     ) -> Self {
         let mut carried = self.clone();
-        carried.waves.retain_mut(|wave| {
-            let state = same(wave.state);
-            let attack = state.and_then(|state| attack_of(to, state));
-            wave.state = state.unwrap_or(wave.state);
-            attack.is_some_and(|attack| attack.wave_of(wave.of).is_some())
-        });
-        carried.shots.retain_mut(|shot| {
-            let state = same(shot.state);
-            let attack = state.and_then(|state| attack_of(to, state));
-            shot.state = state.unwrap_or(shot.state);
-            attack.is_some_and(|attack| attack.shot.is_some())
-        });
+        let goes_on = |state: &mut StateId| same(*state).map(|now| *state = now).is_some();
+        let waves = &mut carried.waves;
+        waves.retain_mut(|wave| goes_on(&mut wave.state) && wave_of(to, wave).is_some());
+        let shots = &mut carried.shots;
+        shots.retain_mut(|shot| goes_on(&mut shot.state) && shot_of(to, shot).is_some());
         carried
     }
 }
@@ -145,12 +132,9 @@ impl Creature {
     /// Sets the target of the shot or beam of an attack that begins: the visible prey, or else a place ahead.
     pub(super) fn mark_prey(&mut self) {
         let seen = self.state.perceived.visible_prey();
-        let mark = seen.unwrap_or_else(|| self.ground_ahead());
+        let ahead = || self.state.position() + self.state.heading() * self.size.height;
+        let mark = seen.unwrap_or_else(ahead);
         self.state.ranged.mark = reachable(mark);
-    }
-
-    fn ground_ahead(&self) -> DVec3 {
-        self.state.position() + self.state.heading() * self.size.height
     }
 
     /// Advances all waves and shots by a tick, whether their attacks still last or not.
@@ -161,16 +145,13 @@ impl Creature {
         let kind = std::sync::Arc::clone(&self.kind);
         let mut waves = std::mem::take(&mut self.state.ranged.waves);
         waves.retain_mut(|wave| {
-            let attack = attack_of(&kind, wave.state);
-            let file = attack.and_then(|attack| attack.wave_of(wave.of));
-            file.is_some_and(|file| self.spread(wave, file, around, dt))
+            wave_of(&kind, wave).is_some_and(|file| self.spread(wave, file, around, dt))
         });
         // Set before the shots fly, since a shot that bursts appends a wave.
         self.state.ranged.waves = waves;
         let mut shots = std::mem::take(&mut self.state.ranged.shots);
         shots.retain_mut(|shot| {
-            let file = attack_of(&kind, shot.state).and_then(|attack| attack.shot.as_ref());
-            file.is_some_and(|file| self.fly(shot, file, around, dt))
+            shot_of(&kind, shot).is_some_and(|file| self.fly(shot, file, around, dt))
         });
         self.state.ranged.shots = shots;
     }
@@ -188,8 +169,11 @@ impl Creature {
         if attack.wave.is_none() && attack.shot.is_none() && attack.beam.is_none() {
             return;
         }
-        let end = self.limb_end(strike);
-        let Some(end) = end.filter(|end| end.is_finite() && *end == reachable(*end)) else {
+        let joint = strike.end();
+        let frame = joint.and_then(|joint| self.palette.model_from_joint(joint));
+        let world = self.surface.world_from_model();
+        let end = frame.map(|frame| world.transform_point(frame.translation));
+        let Some(end) = end.filter(|end| !is_far(*end)) else {
             return;
         };
         self.follow_prey(attack, phase, dt);
@@ -217,13 +201,6 @@ impl Creature {
             self.state.ranged.is_out.wave = true;
             self.send_wave(state, end, wave, around, dt);
         }
-    }
-
-    /// Position of the limb's end, in world space.
-    fn limb_end(&self, strike: &Strike) -> Option<DVec3> {
-        let frame = self.palette.model_from_joint(strike.end()?)?;
-        let world = self.surface.world_from_model();
-        Some(world.transform_point(frame.translation))
     }
 
     fn follow_prey(&mut self, attack: &Attack, phase: AttackPhase, dt: f64) {
@@ -255,6 +232,16 @@ fn attack_of(kind: &CreatureKind, state: StateId) -> Option<&Attack> {
         Some(StateAction::Attack(attack)) => Some(attack),
         _ => None,
     }
+}
+
+/// The wave's description in its attack; `None` if the attack has no such wave.
+fn wave_of<'a>(kind: &'a CreatureKind, wave: &WaveState) -> Option<&'a Wave> {
+    attack_of(kind, wave.state)?.wave_of(wave.of)
+}
+
+/// The shot's description in its attack; `None` if the attack has no shot.
+fn shot_of<'a>(kind: &'a CreatureKind, shot: &ShotState) -> Option<&'a Shot> {
+    attack_of(kind, shot.state)?.shot.as_ref()
 }
 
 /// Moves a place by a length in a direction, or half way to the terrain in that direction.

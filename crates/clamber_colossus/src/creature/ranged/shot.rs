@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::line::Line;
 use super::wave::{self, WaveState};
-use super::{MOST_AT_A_TIME, attack_of, moved_off, reachable};
+use super::{MOST_AT_A_TIME, moved_off, reachable, shot_of};
 use crate::brain::{Shot, StateId, WaveOf};
 use crate::creature::report::{Blow, CreatureEvent};
 use crate::creature::{Creature, Surroundings};
@@ -52,7 +52,7 @@ impl Creature {
     /// Shots of the creature's attacks that are in flight, the oldest first.
     pub fn shots(&self) -> impl Iterator<Item = ActiveShot> + '_ {
         self.state.ranged.shots.iter().filter_map(|shot| {
-            let file = attack_of(&self.kind, shot.state)?.shot.as_ref()?;
+            let file = shot_of(&self.kind, shot)?;
             Some(ActiveShot {
                 state: shot.state,
                 number: shot.number,
@@ -119,6 +119,7 @@ impl Creature {
         let (place, out, struck) = match (first, stop) {
             (Some((share, _, person)), _) => {
                 let place = line.at(share);
+                let mut struck = Vec::new();
                 if file.strikes() {
                     self.report.blows.push(Blow {
                         person: person.id,
@@ -127,10 +128,9 @@ impl Creature {
                         place,
                         state: shot.state,
                     });
-                    (place, DVec3::Y, vec![person.id])
-                } else {
-                    (place, DVec3::Y, Vec::new())
+                    struck.push(person.id);
                 }
+                (place, DVec3::Y, struck)
             }
             (None, Some((share, out))) => (line.at(share), out, Vec::new()),
             (None, None) => {

@@ -5,10 +5,10 @@ use clamber_world::Obstacle;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{MOST_AT_A_TIME, attack_of, moved_off};
+use super::{MOST_AT_A_TIME, moved_off, wave_of};
 use crate::brain::{StateId, Wave, WaveOf};
 use crate::creature::report::{Blow, CreatureEvent};
-use crate::creature::state::FARTHEST_COORDINATE;
+use crate::creature::state::is_far;
 use crate::creature::{Creature, Person, Surroundings};
 
 /// Height above the ground at which a wave begins, metres, so that lower rocks and bumps do not stop it.
@@ -63,7 +63,7 @@ impl Creature {
     /// Waves of the creature's attacks that still spread, the oldest first.
     pub fn waves(&self) -> impl Iterator<Item = ActiveWave> + '_ {
         self.state.ranged.waves.iter().filter_map(move |wave| {
-            let file = attack_of(&self.kind, wave.state)?.wave_of(wave.of)?;
+            let file = wave_of(&self.kind, wave)?;
             Some(ActiveWave {
                 state: wave.state,
                 place: wave.place,
@@ -129,7 +129,7 @@ impl Creature {
         dt: f64,
     ) {
         let (state, place) = (wave.state, wave.place);
-        if !place.is_finite() || place.abs().max_element() > FARTHEST_COORDINATE {
+        if is_far(place) {
             return;
         }
         self.report.events.push(CreatureEvent::Wave {
@@ -173,7 +173,7 @@ impl Creature {
             {
                 continue;
             }
-            let nearest = nearest_on(person, wave.place);
+            let nearest = person.body.nearest_on_axis(wave.place);
             let distance = (nearest.distance(wave.place) - person.body.radius).max(0.0);
             let share = 1.0 - distance / file.radius;
             // The wave strikes a body only while its front is within the body, which spares a person that comes down
@@ -206,19 +206,6 @@ impl Creature {
         }
         to < file.radius
     }
-}
-
-/// The point of a body's axis nearest to a place.
-fn nearest_on(person: &Person, place: DVec3) -> DVec3 {
-    let [start, end] = person.body.ends;
-    let axis = end - start;
-    let length = axis.length_squared();
-    let share = if length > 0.0 {
-        ((place - start).dot(axis) / length).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    start + axis * share
 }
 
 /// True if a body would touch no terrain if it moved down by `height` metres.

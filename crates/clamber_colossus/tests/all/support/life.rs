@@ -123,13 +123,22 @@ impl Obstacle for Aboard<'_> {
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
-        let local = DVec3::from_array(point.coordinates);
-        let [before, now] = [self.before, self.now].map(|at| at.transform_point(local));
-        Some(PointMotion {
-            turn: self.now.rotation * self.before.rotation.conjugate(),
-            frame: Some(self.now.rotation),
-            ..PointMotion::translated(before, now, dt)
-        })
+        Some(motion([self.before, self.now], point, dt))
+    }
+}
+
+/// The motion of a point with ground that was and is at these places.
+pub(crate) fn motion(
+    [before, now]: [Similarity; 2],
+    point: &MaterialPoint,
+    dt: f64,
+) -> PointMotion {
+    let local = DVec3::from_array(point.coordinates);
+    let [from, to] = [before, now].map(|at| at.transform_point(local));
+    PointMotion {
+        turn: now.rotation * before.rotation.conjugate(),
+        frame: Some(now.rotation),
+        ..PointMotion::translated(from, to, dt)
     }
 }
 

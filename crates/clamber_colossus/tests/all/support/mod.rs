@@ -8,16 +8,20 @@
 
 pub(crate) mod life;
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
-use clamber_colossus::{Brain, ColossusError, Creature, CreatureConfig, CreatureKind, Person};
+use clamber_animation::rig::JointId;
+use clamber_colossus::{
+    Brain, ColossusError, Creature, CreatureConfig, CreatureKind, Noise, Person, Riding,
+    Surroundings,
+};
 use clamber_surface::geometry::WorldCapsule;
-use clamber_surface::mesh::Rig;
-use clamber_surface::mesh::VertexId;
+use clamber_surface::mesh::{Rig, TriangleId, VertexId};
 use clamber_world::rapier3d::parry::utils::Array2;
 use clamber_world::rapier3d::prelude::{
-    ColliderBuilder, PhysicsWorld, Pose, Real, SharedShape, Vector,
+    ColliderBuilder, ColliderHandle, PhysicsWorld, Pose, Real, SharedShape, Vector,
 };
+use clamber_world::{BodyPoses, HalfSpace, MaterialPoint, Obstacle, RapierTerrain};
 use glam::DVec3;
 
 /// Tick length, seconds.
@@ -89,6 +93,28 @@ pub(crate) fn ground(height: impl Fn(f64, f64) -> f64) -> PhysicsWorld {
     world.insert_collider(field, None);
     world.detect_collisions(&(), &());
     world
+}
+
+/// A world of rapier as terrain. Nothing in it moves.
+pub(crate) fn terrain_of(world: &PhysicsWorld) -> RapierTerrain<'_> {
+    static STILL: BodyPoses = BodyPoses::new();
+    RapierTerrain::of_world(world, &STILL)
+}
+
+/// Adds a block of rock with its centre at `at` and the half extents `half`.
+pub(crate) fn add_block(world: &mut PhysicsWorld, at: DVec3, half: DVec3) -> ColliderHandle {
+    let [x, y, z] = half.as_vec3().to_array();
+    let place = Pose::from_translation(at.as_vec3());
+    let block = world.insert_collider(ColliderBuilder::cuboid(x, y, z).position(place), None);
+    world.detect_collisions(&(), &());
+    block
+}
+
+/// The place of a joint of a creature in the world.
+pub(crate) fn joint_place(creature: &Creature, joint: JointId) -> DVec3 {
+    let frame = creature.palette().model_from_joint(joint).unwrap();
+    let world = creature.surface().world_from_model();
+    world.transform_point(frame.translation)
 }
 
 /// Adds balls of rock. Each has a place on the ground, a radius, and a height by which it stands out of the ground,
@@ -195,5 +221,68 @@ pub(crate) fn person(at: DVec3) -> Person {
             radius: 0.3,
         },
         riding: None,
+    }
+}
+
+/// A skeleton, clips and a skin of the test data; `None`, with a note, without the data.
+pub(crate) fn test_rig(file: &str) -> Option<Rig> {
+    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
+        eprintln!("SKIPPED {file}: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
+        return None;
+    };
+    let path = std::path::Path::new(&root).join("models").join(file);
+    Some(clamber_gltf::load(path).unwrap().rig)
+}
+
+/// A person that rides a creature, on one of the skin's triangles.
+pub(crate) fn rider(at: DVec3, triangle: TriangleId) -> Person {
+    Person {
+        riding: Some(Riding {
+            at: MaterialPoint::on_triangle(triangle, [1.0 / 3.0; 3]),
+            hangs: false,
+        }),
+        ..person(at)
+    }
+}
+
+/// A noise that is heard from afar.
+pub(crate) fn noise(place: DVec3) -> Noise {
+    Noise {
+        place,
+        loudness: 5.0,
+    }
+}
+
+/// Level ground at a height of 0.
+pub(crate) fn level_ground() -> [&'static dyn Obstacle; 1] {
+    static GROUND: LazyLock<HalfSpace> = LazyLock::new(|| HalfSpace::below(0.0));
+    [&*GROUND]
+}
+
+/// Terrain alone.
+pub(crate) fn on_terrain<'a>(terrain: &'a [&'a dyn Obstacle]) -> Surroundings<'a> {
+    with_people(terrain, &[])
+}
+
+/// Terrain and people.
+pub(crate) fn with_people<'a>(
+    terrain: &'a [&'a dyn Obstacle],
+    people: &'a [Person],
+) -> Surroundings<'a> {
+    Surroundings {
+        terrain,
+        people,
+        ..Surroundings::default()
+    }
+}
+
+/// Terrain and noises.
+pub(crate) fn with_noises<'a>(
+    terrain: &'a [&'a dyn Obstacle],
+    noises: &'a [Noise],
+) -> Surroundings<'a> {
+    Surroundings {
+        noises,
+        ..on_terrain(terrain)
     }
 }

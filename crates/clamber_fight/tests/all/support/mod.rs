@@ -7,13 +7,11 @@
     reason = "helpers of tests, of which each file uses some"
 )]
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use clamber_climber::{ClimberInput, ClimberMode, StepRules};
 use clamber_colossus::{Brain, CreatureConfig, CreatureKind};
-use clamber_fight::{
-    Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId, Order, SwordConfig,
-};
+use clamber_fight::{Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId, Order};
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::{
     BuildOptions, ColliderMesh, Influence, MeshSource, Rig, SurfaceKind, SurfaceTag,
@@ -66,7 +64,23 @@ pub(crate) fn weak_point(name: &str, at: Vec3, hit_points: f64, order: u32) -> W
     point
 }
 
+/// Keyframes of a joint that moves at a constant velocity.
+pub(crate) fn moves(velocity: Vec3, seconds: f32) -> Vec<(f32, Vec3, Vec3)> {
+    vec![
+        (0.0, Vec3::ZERO, Vec3::ONE),
+        (seconds, velocity * seconds, Vec3::ONE),
+    ]
+}
+
 impl Slab {
+    /// A slab at rest with a weak point in its middle.
+    pub(crate) fn with_heart(hit_points: f64) -> Self {
+        Self {
+            weak_points: vec![weak_point("heart", Vec3::ZERO, hit_points, 0)],
+            ..Self::default()
+        }
+    }
+
     pub(crate) fn kind(&self) -> Arc<CreatureKind> {
         let (mut positions, mut triangles, mut tags) = (Vec::new(), Vec::new(), Vec::new());
         let fur = (0.0, SurfaceKind::Fur, 0, -HALF);
@@ -156,12 +170,8 @@ pub(crate) struct Wall {
     pub(crate) plate: Option<f64>,
 }
 
-/// The kind of a wall with this many joints, at rest.
-pub(crate) fn wall(joints: u32) -> Arc<CreatureKind> {
-    Wall::of(joints).kind()
-}
-
 impl Wall {
+    /// A wall with this many joints, at rest.
     pub(crate) fn of(joints: u32) -> Self {
         Self {
             joints,
@@ -234,14 +244,50 @@ impl Wall {
     }
 }
 
-pub(crate) fn sword() -> SwordConfig {
-    SwordConfig::default()
-}
-
 /// The first fighter of each arena.
 pub(crate) const HERO: FighterId = FighterId(0);
 /// The first creature of each arena.
 pub(crate) const GIANT: CreatureId = CreatureId(0);
+
+/// Level ground at a height of 0.
+pub(crate) fn level_ground() -> [(ObstacleId, &'static dyn Obstacle); 1] {
+    static LEVEL: LazyLock<HalfSpace> = LazyLock::new(|| HalfSpace::below(0.0));
+    [(GROUND, &*LEVEL)]
+}
+
+/// Level ground far below, at a height of -100 m.
+pub(crate) fn low_ground() -> [(ObstacleId, &'static dyn Obstacle); 1] {
+    static LOW: LazyLock<HalfSpace> = LazyLock::new(|| HalfSpace::below(-100.0));
+    [(GROUND, &*LOW)]
+}
+
+/// Steps an arena over terrain while all fighters are idle.
+pub(crate) fn rest(arena: &mut Arena, terrain: &[(ObstacleId, &dyn Obstacle)], ticks: u32) {
+    let inputs = vec![ClimberInput::IDLE; arena.fighters().len()];
+    for _ in 0..ticks {
+        arena.step(&inputs, terrain).unwrap();
+    }
+}
+
+/// Takes all hit points of an arena's first fighter.
+pub(crate) fn kill(arena: &mut Arena) {
+    let mut state = arena.save();
+    state.fighters[0].state.climber.hit_points = 0.0;
+    arena.restore(&state).unwrap();
+}
+
+/// Whether a fighter rises in one of the events.
+pub(crate) fn rises(events: &[ArenaEvent]) -> bool {
+    let is_rise = |event: &ArenaEvent| matches!(event, ArenaEvent::Rose { .. });
+    events.iter().any(is_rise)
+}
+
+/// An arena with a creature, and no fighters yet.
+pub(crate) fn arena_with(kind: Arc<CreatureKind>) -> Arena {
+    let mut arena = Arena::new(ArenaConfig::default()).unwrap();
+    arena.add_creature(kind, CreatureConfig::default()).unwrap();
+    arena
+}
 
 /// An input with buttons, but without a direction.
 pub(crate) fn pressing(actions: u32) -> ClimberInput {
@@ -253,10 +299,8 @@ pub(crate) fn pressing(actions: u32) -> ClimberInput {
 
 /// Steps an arena over horizontal ground at y = -100 m, with the same input for all fighters.
 pub(crate) fn step(arena: &mut Arena, input: &ClimberInput) -> Vec<ArenaEvent> {
-    let ground = HalfSpace::below(-100.0);
     let inputs = vec![*input; arena.fighters().len()];
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
-    arena.step(&inputs, &terrain).unwrap().to_vec()
+    arena.step(&inputs, &low_ground()).unwrap().to_vec()
 }
 
 /// Steps an arena with orders over the same ground.
@@ -265,10 +309,7 @@ pub(crate) fn step_with(
     inputs: &[ClimberInput],
     orders: &[Order],
 ) -> Vec<ArenaEvent> {
-    let ground = HalfSpace::below(-100.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
-    let rules = StepRules::default();
-    let events = arena.step_with(inputs, orders, &terrain, &rules);
+    let events = arena.step_with(inputs, orders, &low_ground(), &StepRules::default());
     events.unwrap().to_vec()
 }
 
@@ -321,7 +362,6 @@ pub(crate) fn giant_with(change: impl Fn(&mut serde_json::Value)) -> Arc<Creatur
 /// giant, shoots and throws. The third one stands on a slab and breaks its plate.
 pub(crate) struct Melee {
     pub(crate) arena: Arena,
-    ground: HalfSpace,
     /// Number of ticks by which the inputs are shifted against the first fight.
     shift: u64,
 }
@@ -352,10 +392,7 @@ impl Melee {
             .unwrap();
         let way = Vec3::new(0.5, 0.1, -0.3);
         let slab = Slab {
-            keys: vec![
-                (0.0, Vec3::ZERO, Vec3::ONE),
-                (600.0, way * 600.0, Vec3::ONE),
-            ],
+            keys: moves(way, 600.0),
             weak_points: vec![weak_point("heart", Vec3::new(3.0, 0.0, 3.0), 9.0, 0)],
             plate: true,
             ..Slab::default()
@@ -383,7 +420,6 @@ impl Melee {
         }
         Self {
             arena,
-            ground: HalfSpace::below(0.0),
             shift: 61 * number,
         }
     }
@@ -434,8 +470,7 @@ impl Melee {
     }
 
     pub(crate) fn step(&mut self) -> Vec<ArenaEvent> {
-        let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &self.ground)];
         let inputs = Self::inputs(self.arena.tick() + self.shift);
-        self.arena.step(&inputs, &terrain).unwrap().to_vec()
+        self.arena.step(&inputs, &level_ground()).unwrap().to_vec()
     }
 }

@@ -22,13 +22,7 @@ struct Case {
 
 impl Case {
     fn new(rng: &mut fastrand::Rng, case: usize) -> Self {
-        let spread = [
-            Spread::Random,
-            Spread::NearlyEqual,
-            Spread::Uneven,
-            Spread::Few,
-            Spread::Constant,
-        ][case / 16 % 5];
+        let spread = Spread::ALL[case / 16 % 5];
         let (mesh, mut all) = creature(rng, 1 + case % 16, spread);
         let children: Vec<Vec<VertexId>> = (0..rng.usize(1..=LANES))
             .map(|_| {
@@ -94,11 +88,9 @@ fn hunt(seed: u64, checks: usize) -> usize {
             assert_eq!(outside, 0, "seed {seed}, case {case}, {motion:?}");
             let found = node.spheres(SimdLevel::best());
             assert!(found.radius.iter().all(|r| *r >= 0.0), "{found:?}");
-            let finite = found.radius.iter().all(|r| r.is_finite());
-            assert!(
-                finite || matches!(motion, Motion::Huge),
-                "{motion:?}: {found:?}"
-            );
+            let may_be =
+                matches!(motion, Motion::Huge) || found.radius.iter().all(|r| r.is_finite());
+            assert!(may_be, "{motion:?}: {found:?}");
             checked += seen;
         }
         case += 1;
@@ -151,14 +143,10 @@ fn every_instruction_set_gives_the_same_bits() {
         let mut node = Case::new(&mut rng, case);
         for motion in MOTIONS {
             node.pose(&mut rng, motion);
-            let scalar = node.spheres(SimdLevel::best());
+            let wanted = bits(&node.spheres(SimdLevel::best()));
             for level in SimdLevel::available() {
-                let found = node.spheres(level);
-                assert_eq!(
-                    bits(&found),
-                    bits(&scalar),
-                    "case {case}, {motion:?}, {level}"
-                );
+                let found = bits(&node.spheres(level));
+                assert_eq!(found, wanted, "case {case}, {motion:?}, {level}");
             }
         }
     }
@@ -181,10 +169,8 @@ fn a_joint_that_moves_no_vertex_of_a_lane_does_not_widen_it() {
     far.rows[0][3] = 1e6;
     table.update(&[Affine::IDENTITY, Affine::IDENTITY, Affine::IDENTITY, far]);
     let found = node_spheres(SimdLevel::best(), &hierarchy, &table);
-    assert!(
-        found.radius[0] < 0.500_01 && found.radius[1] >= 50.0,
-        "{found:?}"
-    );
+    assert!(found.radius[0] < 0.500_01, "{found:?}");
+    assert!(found.radius[1] >= 50.0, "{found:?}");
 }
 
 #[test]
@@ -196,24 +182,20 @@ fn overflow_gives_an_infinite_radius_and_never_nan() {
     let at = |x: f32, scale: f32| Affine {
         rows: [[scale, 0.0, 0.0, x], [0.0; 4], [0.0; 4]],
     };
+    let huge = Affine {
+        rows: [[f32::MAX, f32::MAX, f32::MAX, 0.0]; 3],
+    };
     let far = 1e30;
     for palette in [
         [at(far, 1.0), at(-far, 1.0)],
         [at(0.0, f32::MAX), at(0.0, f32::MAX)],
-        [
-            Affine {
-                rows: [[f32::MAX, f32::MAX, f32::MAX, 0.0]; 3],
-            },
-            Affine::IDENTITY,
-        ],
+        [huge, Affine::IDENTITY],
     ] {
         table.update(&palette);
         for level in SimdLevel::available() {
             let found = node_spheres(level, &hierarchy, &table);
-            assert!(
-                !found.radius.iter().any(|r| r.is_nan()),
-                "{level}: {found:?}"
-            );
+            let is_nan = found.radius.iter().any(|r| r.is_nan());
+            assert!(!is_nan, "{level}: {found:?}");
             assert_eq!(found.radius[0], f32::INFINITY, "{level}: {found:?}");
         }
     }
@@ -325,18 +307,13 @@ fn a_node_lists_the_joints_of_its_children_once() {
     for case in 0..200 {
         let node = Case::new(&mut rng, case);
         let joints = &node.hierarchy.joints;
-        assert!(
-            joints.windows(2).all(|pair| pair[0] < pair[1]),
-            "{joints:?}"
-        );
+        let ascends = joints.windows(2).all(|pair| pair[0] < pair[1]);
+        assert!(ascends, "{joints:?}");
         assert!(joints.iter().all(|joint| *joint < JOINTS), "{joints:?}");
         assert_eq!(joints.len(), node.hierarchy.weights.len());
         for lane in 0..LANES {
-            let middles = node
-                .hierarchy
-                .weights
-                .iter()
-                .map(|w| f64::from(w.middle[lane]));
+            let weights = node.hierarchy.weights.iter();
+            let middles = weights.map(|w| f64::from(w.middle[lane]));
             let child = f64::from(u8::from(lane < node.children.len()));
             assert_eq!(middles.sum::<f64>(), child, "case {case}, lane {lane}");
         }

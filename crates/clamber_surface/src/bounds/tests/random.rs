@@ -3,9 +3,9 @@
 use glam::{DAffine3, DMat3, Vec3};
 
 use crate::geometry::{Affine, MAX_COORDINATE, rotation_from_axis_angle, widen};
-use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, VertexId};
-use crate::rig::{JointId, Palette};
-use crate::testing::{direction, point};
+use crate::mesh::{ColliderMesh, VertexId};
+use crate::rig::Palette;
+use crate::testing::{direction, influence, point, separate, skinned_mesh};
 
 /// Number of joints of a test creature.
 pub(crate) const JOINTS: u32 = 20;
@@ -25,6 +25,16 @@ pub(crate) enum Spread {
     Few,
     /// The same weights at every vertex.
     Constant,
+}
+
+impl Spread {
+    pub(crate) const ALL: [Self; 5] = [
+        Self::Random,
+        Self::NearlyEqual,
+        Self::Uneven,
+        Self::Few,
+        Self::Constant,
+    ];
 }
 
 fn weight(rng: &mut fastrand::Rng, spread: Spread, k: usize) -> f32 {
@@ -56,21 +66,11 @@ pub(crate) fn creature(
     let mut given = Vec::new();
     for _ in 0..positions.len() {
         for k in 0..influences {
-            given.push(Influence {
-                joint: JointId((first + k as u32) % JOINTS),
-                weight: weight(rng, spread, k),
-            });
+            let joint = (first + k as u32) % JOINTS;
+            given.push(influence(joint, weight(rng, spread, k)));
         }
     }
-    let triangles: Vec<[u32; 3]> = (0..21).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &given,
-        joint_count: JOINTS as usize,
-        ..MeshSource::default()
-    };
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    let mesh = skinned_mesh(&positions, &separate(21), &given, JOINTS as usize);
     let patch = (0..mesh.positions().len() as u32 - 3).map(VertexId);
     let patch = patch.collect();
     (mesh, patch)

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use glam::{DAffine3, Vec3};
 
-use crate::bounds::{JointTable, root_box, spheres};
+use super::assert_in_root_box;
+use crate::bounds::{JointTable, spheres};
 use crate::geometry::{Affine, rotation_from_axis_angle, widen};
-use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use crate::rig::JointId;
+use crate::mesh::{ColliderMesh, Influence};
 use crate::simd::SimdLevel;
 use crate::skin::skin;
-use crate::testing::direction;
+use crate::testing::{direction, influence, skinned_mesh};
 
 /// A mesh of one triangle, from its corners and the weights of each corner by joint.
 fn triangle(corners: [Vec3; 3], weights: [&[f32]; 3]) -> Arc<ColliderMesh> {
@@ -18,20 +18,9 @@ fn triangle(corners: [Vec3; 3], weights: [&[f32]; 3]) -> Arc<ColliderMesh> {
     let given: Vec<Influence> = weights
         .iter()
         .flat_map(|weights| (0..).zip(weights.iter()))
-        .map(|(joint, weight)| Influence {
-            joint: JointId(joint),
-            weight: *weight,
-        })
+        .map(|(joint, weight)| influence(joint, *weight))
         .collect();
-    let source = MeshSource {
-        positions: &corners,
-        triangles: &[[0, 1, 2]],
-        influences: &given,
-        joint_count: joints,
-        ..MeshSource::default()
-    };
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
-    Arc::new(mesh)
+    Arc::new(skinned_mesh(&corners, &[[0, 1, 2]], &given, joints))
 }
 
 fn turn(rng: &mut fastrand::Rng) -> Affine {
@@ -50,10 +39,8 @@ fn assert_in_lane(mesh: &ColliderMesh, palette: &[Affine], case: &str) {
         let found = spheres(level, hierarchy, node, &table);
         let sphere = found.sphere(0);
         for p in skin(mesh, palette).unwrap() {
-            assert!(
-                sphere.contains(p),
-                "{case}, {level}: {p} outside {sphere:?}"
-            );
+            let inside = sphere.contains(p);
+            assert!(inside, "{case}, {level}: {p} outside {sphere:?}");
         }
     }
 }
@@ -70,13 +57,7 @@ fn rounding_errors_are_within_the_root_box_where_each_joint_moves_one_vertex() {
             [&[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0], &[0.0, 0.0, 1.0]],
         );
         let palette = [turn(&mut rng), turn(&mut rng), turn(&mut rng)];
-        let mut table = JointTable::default();
-        table.update(&palette);
-        let found = root_box(mesh.joint_balls(), &table);
-        for p in skin(&mesh, &palette).unwrap() {
-            let inside = p.cmpge(found.min).all() && p.cmple(found.max).all();
-            assert!(inside, "case {case}: {p} outside {found:?}");
-        }
+        assert_in_root_box(&mesh, &palette, &format!("case {case}"));
     }
 }
 
@@ -94,13 +75,7 @@ fn rounding_errors_of_a_far_translation_are_within_the_root_box() {
         for (row, x) in matrix.rows.iter_mut().zip(far.to_array()) {
             row[3] = x;
         }
-        let mut table = JointTable::default();
-        table.update(&[matrix; 3]);
-        let found = root_box(mesh.joint_balls(), &table);
-        for p in skin(&mesh, &[matrix; 3]).unwrap() {
-            let inside = p.cmpge(found.min).all() && p.cmple(found.max).all();
-            assert!(inside, "case {case}: {p} outside {found:?}");
-        }
+        assert_in_root_box(&mesh, &[matrix; 3], &format!("case {case}"));
     }
 }
 

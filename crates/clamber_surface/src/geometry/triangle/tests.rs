@@ -6,14 +6,7 @@ mod moving;
 
 use super::*;
 use crate::geometry::{Ray, round_to_f32};
-
-fn random_point(rng: &mut fastrand::Rng) -> Vec3 {
-    Vec3::new(
-        rng.f32() * 2.0 - 1.0,
-        rng.f32() * 2.0 - 1.0,
-        rng.f32() * 2.0 - 1.0,
-    )
-}
+use crate::testing::point;
 
 /// Nearest distance by another method: a search over the barycentric coordinates, a coarse grid refined around its best
 /// cell until the cell is below rounding.
@@ -44,12 +37,13 @@ fn distance_by_search(corners: [Vec3; 3], p: Vec3) -> f64 {
 fn closest_point_agrees_with_search() {
     let mut rng = fastrand::Rng::with_seed(1);
     for case in 0..300 {
-        let corners = [(); 3].map(|()| random_point(&mut rng));
-        let p = random_point(&mut rng) * 2.0;
+        let corners = [(); 3].map(|()| point(&mut rng, 1.0));
+        let p = point(&mut rng, 1.0) * 2.0;
         let found = closest_point(corners, p);
         let searched = distance_by_search(corners, p);
+        let off = (found.distance - searched).abs();
         assert!(
-            (found.distance - searched).abs() < 1e-6,
+            off < 1e-6,
             "case {case} {corners:?} {p}: {found:?} against {searched}"
         );
         let back = (point_at(corners, found.barycentric) - widen(p)).length();
@@ -64,18 +58,16 @@ fn closest_point_meets_the_optimality_condition_on_slivers_far_out() {
     for case in 0..20_000 {
         let thin = [1.0, 1e-3, 1e-6, 0.0][case % 4];
         let offset = [0.0, 1000.0][(case / 4) % 2];
-        let a = random_point(&mut rng) + Vec3::splat(offset);
-        let b = random_point(&mut rng) + Vec3::splat(offset);
-        let c = a + (b - a) * rng.f32() + random_point(&mut rng) * thin;
-        let p = random_point(&mut rng) * 2.0 + Vec3::splat(offset);
+        let a = point(&mut rng, 1.0) + Vec3::splat(offset);
+        let b = point(&mut rng, 1.0) + Vec3::splat(offset);
+        let c = a + (b - a) * rng.f32() + point(&mut rng, 1.0) * thin;
+        let p = point(&mut rng, 1.0) * 2.0 + Vec3::splat(offset);
         let found = closest_point([a, b, c], p);
         let q = point_at([a, b, c], found.barycentric) - widen(p);
         for corner in [a, b, c] {
             let slack = q.dot(widen(corner) - widen(p) - q);
-            assert!(
-                slack >= -1e-7 * (1.0 + q.length()),
-                "case {case} {a} {b} {c} {p}: {slack}"
-            );
+            let allowed = -1e-7 * (1.0 + q.length());
+            assert!(slack >= allowed, "case {case} {a} {b} {c} {p}: {slack}");
         }
     }
 }
@@ -98,18 +90,15 @@ fn two_triangles_find_the_same_distance_to_the_edge_they_share() {
     let mut rng = fastrand::Rng::with_seed(4);
     let mut shared = 0;
     for case in 0..5_000 {
-        let [a, b] = [(); 2].map(|()| random_point(&mut rng));
+        let [a, b] = [(); 2].map(|()| point(&mut rng, 1.0));
         // The third corners of both triangles point away from p, so that the shared edge is nearest for both.
-        let p = (a + b) * 0.5 + random_point(&mut rng) * 0.3;
+        let p = (a + b) * 0.5 + point(&mut rng, 1.0) * 0.3;
         let away = (a + b) * 0.5 - p;
-        let [c, d] = [(); 2].map(|()| a + away * 3.0 + random_point(&mut rng) * 0.1);
+        let [c, d] = [(); 2].map(|()| a + away * 3.0 + point(&mut rng, 1.0) * 0.1);
         let (one, other) = (closest_point([a, b, c], p), closest_point([d, b, a], p));
         if one.barycentric.z == 0.0 && other.barycentric.x == 0.0 {
-            assert_eq!(
-                one.distance.to_bits(),
-                other.distance.to_bits(),
-                "case {case}"
-            );
+            let [one, other] = [one, other].map(|found| found.distance.to_bits());
+            assert_eq!(one, other, "case {case}");
             shared += 1;
         }
     }
@@ -132,11 +121,11 @@ fn collapsed_triangle_answers_as_segment_and_as_point() {
 fn segment_through_a_face_is_at_distance_zero_from_its_crossing_point() {
     let mut rng = fastrand::Rng::with_seed(5);
     for case in 0..20_000 {
-        let corners = [(); 3].map(|()| random_point(&mut rng));
+        let corners = [(); 3].map(|()| point(&mut rng, 1.0));
         let (u, v) = (rng.f32() * 0.4 + 0.1, rng.f32() * 0.4 + 0.1);
         let [a, b, c] = corners;
         let inside = a + (b - a) * u + (c - a) * v;
-        let along = random_point(&mut rng);
+        let along = point(&mut rng, 1.0);
         let normal = round_to_f32(scaled_normal(corners).normalize());
         if scaled_normal(corners).length() < 0.1 || normal.dot(along).abs() < 0.1 {
             continue;
@@ -145,10 +134,8 @@ fn segment_through_a_face_is_at_distance_zero_from_its_crossing_point() {
         let found = closest_to_segment(corners, p, inside + along);
         assert_eq!(found.distance, 0.0, "case {case} {corners:?} {p} {along}");
         let at = round_to_f32(point_at(corners, found.barycentric));
-        assert!(
-            (at - inside).length() < 1e-5,
-            "case {case}: {at} for {inside}"
-        );
+        let off = (at - inside).length();
+        assert!(off < 1e-5, "case {case}: {at} for {inside}");
     }
 }
 
@@ -157,17 +144,12 @@ fn segments_beside_above_and_parallel_to_a_triangle() {
     let corners = [Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0];
     let distance = |a: [f32; 3], b: [f32; 3]| {
         let found = closest_to_segment(corners, Vec3::from(a), Vec3::from(b));
-        (
-            found.distance,
-            round_to_f32(point_at(corners, found.barycentric)),
-        )
+        let at = point_at(corners, found.barycentric);
+        (found.distance, round_to_f32(at))
     };
     let found = distance([0.5, 0.5, 1.0], [0.5, 0.5, 3.0]);
-    assert_eq!(
-        found,
-        (1.0, Vec3::new(0.5, 0.5, 0.0)),
-        "one end above the face"
-    );
+    let wanted = (1.0, Vec3::new(0.5, 0.5, 0.0));
+    assert_eq!(found, wanted, "one end above the face");
     let found = distance([0.25, 0.25, 2.0], [0.75, 0.75, 2.0]);
     assert_eq!(found.0, 2.0, "parallel to the face");
     let found = distance([0.5, -3.0, -1.0], [0.5, -3.0, 4.0]);
@@ -199,10 +181,8 @@ fn ray_meets_both_sides_and_borders_but_not_edge_on() {
         assert!(from(0.6, 0.6).is_none(), "outside");
         assert!(meets(Vec3::new(0.1, 0.1, side), Vec3::new(0.0, 0.0, side)).is_none());
     }
-    assert!(
-        meets(Vec3::new(-1.0, 0.2, 0.0), Vec3::X).is_none(),
-        "edge-on"
-    );
+    let edge_on = meets(Vec3::new(-1.0, 0.2, 0.0), Vec3::X);
+    assert!(edge_on.is_none(), "edge-on");
 }
 
 #[test]
@@ -244,13 +224,12 @@ fn rays_at_edges_and_corners_of_a_closed_mesh_do_not_leak() {
             let triangle = triangles[rng.usize(0..triangles.len())];
             let along = [0.0, rng.f32()][rng.usize(0..2)];
             let target = positions[triangle[0]].lerp(positions[triangle[1]], along);
-            let origin = offset + random_point(&mut rng) * 0.3;
+            let origin = offset + point(&mut rng, 1.0) * 0.3;
             let ray = Ray::new(origin, target - origin).unwrap();
             let sheared = ShearedRay::new(&ray);
             let met = triangles.iter().any(|t| {
-                sheared
-                    .intersect(t.map(|v| positions[v]), f64::INFINITY)
-                    .is_some()
+                let corners = t.map(|v| positions[v]);
+                sheared.intersect(corners, f64::INFINITY).is_some()
             });
             assert!(met, "leak: {ray:?} at {target}");
         }

@@ -4,22 +4,18 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::*;
-use crate::mesh::{BuildOptions, MeshSource, SurfaceTag, VertexId};
+use crate::mesh::{MeshSource, SurfaceTag, VertexId};
 use crate::surface::SkinnedSurface;
+use crate::testing::{built, point};
 
 fn mesh(positions: &[Vec3], triangles: &[[u32; 3]]) -> ColliderMesh {
-    let source = MeshSource::rigid(positions, triangles);
-    ColliderMesh::build(&source, &BuildOptions::default())
-        .unwrap()
-        .0
+    built(&MeshSource::rigid(positions, triangles))
 }
 
 /// Random triangles on few vertices: some edges have many triangles, some have one.
 fn crowd(rng: &mut fastrand::Rng) -> ColliderMesh {
     let vertices = rng.u32(4..14);
-    let positions: Vec<Vec3> = (0..vertices)
-        .map(|_| crate::testing::point(rng, 1.0))
-        .collect();
+    let positions: Vec<Vec3> = (0..vertices).map(|_| point(rng, 1.0)).collect();
     let triangles: Vec<[u32; 3]> = (0..rng.usize(1..25))
         .map(|_| {
             let first = rng.u32(0..vertices);

@@ -1,5 +1,6 @@
 use super::*;
 use crate::mesh::{PartId, TriangleId};
+use crate::testing::influence;
 
 /// A unit square of two triangles on two joints. The triangles do not share vertices.
 struct Square {
@@ -7,13 +8,6 @@ struct Square {
     triangles: Vec<[u32; 3]>,
     influences: Vec<Influence>,
     tags: Vec<SurfaceTag>,
-}
-
-fn influence(joint: u32, weight: f32) -> Influence {
-    Influence {
-        joint: JointId(joint),
-        weight,
-    }
 }
 
 fn square() -> Square {

@@ -2,12 +2,9 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use super::super::{
-    BuildOptions, ColliderMesh, Influence, MeshSource, PartId, SurfaceTag, TriangleId, VertexId,
-};
+use super::super::{ColliderMesh, Influence, MeshSource, PartId, SurfaceTag, TriangleId, VertexId};
 use super::*;
-use crate::rig::JointId;
-use crate::testing::{point, tube};
+use crate::testing::{built, influence, point, separate, tube};
 
 /// A mesh from vertices with their influences.
 fn mesh_of(
@@ -21,25 +18,19 @@ fn mesh_of(
     for (_, influences) in vertices {
         ends.push(ends.last().copied().unwrap_or(0) + influences.len() as u32);
     }
-    let source = MeshSource {
+    built(&MeshSource {
         positions: &positions,
         triangles,
         influences: &influences,
         influence_ends: &ends,
         joint_count,
         ..MeshSource::default()
-    };
-    ColliderMesh::build(&source, &BuildOptions::default())
-        .unwrap()
-        .0
+    })
 }
 
 fn influences(rng: &mut fastrand::Rng, count: usize, joints: u32) -> Vec<Influence> {
-    let influence = |_| Influence {
-        joint: JointId(rng.u32(0..joints)),
-        weight: rng.f32() + 0.01,
-    };
-    (0..count).map(influence).collect()
+    let any = |_| influence(rng.u32(0..joints), rng.f32() + 0.01);
+    (0..count).map(any).collect()
 }
 
 /// Triangles without shared vertices.
@@ -51,10 +42,7 @@ fn soup(seed: u64, triangles: u32, joints: u32, most_influences: usize) -> Colli
             (point(&mut rng, 10.0), influences(&mut rng, count, joints))
         })
         .collect();
-    let triangles: Vec<_> = (0..triangles)
-        .map(|t| [0, 1, 2].map(|c| t * 3 + c))
-        .collect();
-    mesh_of(&vertices, &triangles, joints as usize)
+    mesh_of(&vertices, &separate(triangles), joints as usize)
 }
 
 /// Random triangles on few vertices.
@@ -87,11 +75,7 @@ fn holed_tube() -> ColliderMesh {
 }
 
 fn one_triangle() -> ColliderMesh {
-    let one = vec![Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    }];
-    let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| (p, one.clone()));
+    let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| (p, vec![influence(0, 1.0)]));
     mesh_of(&vertices, &[[0, 1, 2]], 1)
 }
 
@@ -266,10 +250,6 @@ fn few_copies_and_full_clusters_on_a_smooth_skin() {
     let mut vertices = Vec::new();
     for v in 0..side * side {
         let (x, y) = ((v % side) as f32 / 100.0, (v / side) as f32 / 100.0);
-        let influence = |joint, weight| Influence {
-            joint: JointId(joint),
-            weight,
-        };
         let influences = vec![influence(0, x), influence(1, 1.0 - x)];
         vertices.push((Vec3::new(x, y, 0.1 * x * y), influences));
     }
@@ -302,18 +282,11 @@ fn the_same_mesh_gives_the_same_clusters() {
 #[test]
 fn tiny_and_huge_coordinates_are_clustered() {
     let mut rng = fastrand::Rng::with_seed(9);
-    let one = |joint| {
-        vec![Influence {
-            joint: JointId(joint),
-            weight: 1.0,
-        }]
-    };
     for scale in [1e-40, 1e-20, 1e20, 3e29] {
         let vertices: Vec<_> = (0..900)
-            .map(|v| (point(&mut rng, scale), one(v / 450)))
+            .map(|v| (point(&mut rng, scale), vec![influence(v / 450, 1.0)]))
             .collect();
-        let triangles: Vec<_> = (0..300).map(|t| [0, 1, 2].map(|c| t * 3 + c)).collect();
-        let mesh = mesh_of(&vertices, &triangles, 2);
+        let mesh = mesh_of(&vertices, &separate(300), 2);
         let (clusters, _) = build(&mesh);
         let triangles = clusters.clusters.iter().map(|c| usize::from(c.triangles));
         assert_eq!(triangles.sum::<usize>(), mesh.triangles().len(), "{scale}");

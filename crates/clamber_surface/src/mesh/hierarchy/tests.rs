@@ -7,25 +7,12 @@ use crate::mesh::clusters::{Clusters, ROW, build};
 use crate::mesh::summary::Summarizer;
 use crate::mesh::weights::WEIGHT_ONE;
 use crate::mesh::{ColliderMesh, VertexId};
-
-/// The clusters below a child, left to right.
-fn clusters_below(hierarchy: &Hierarchy, child: Child, out: &mut Vec<u32>) {
-    match child {
-        Child::Cluster(cluster) => out.push(cluster),
-        Child::Node(index) => {
-            let node = &hierarchy.nodes[index as usize];
-            for lane in 0..usize::from(node.lanes) {
-                clusters_below(hierarchy, node.child(lane), out);
-            }
-        }
-    }
-}
+use crate::testing::clusters_below;
 
 fn vertices_below(hierarchy: &Hierarchy, clusters: &Clusters, child: Child) -> Vec<VertexId> {
-    let mut below = Vec::new();
-    clusters_below(hierarchy, child, &mut below);
-    let slots = below.iter().flat_map(|index| {
-        let cluster = &clusters.clusters[*index as usize];
+    let below = clusters_below(hierarchy, child).into_iter();
+    let slots = below.flat_map(|index| {
+        let cluster = &clusters.clusters[index as usize];
         let first = cluster.first_row as usize * ROW;
         &clusters.vertices[first..][..usize::from(cluster.slots)]
     });
@@ -51,10 +38,8 @@ fn for_each_lane(
 fn every_cluster_is_once_below_the_root_and_parents_come_first() {
     for (name, mesh) in meshes() {
         let (clusters, hierarchy) = build(&mesh);
-        let mut below = Vec::new();
-        clusters_below(&hierarchy, Child::Node(0), &mut below);
         let all: Vec<u32> = (0..clusters.clusters.len() as u32).collect();
-        assert_eq!(below, all, "{name}");
+        assert_eq!(clusters_below(&hierarchy, Child::Node(0)), all, "{name}");
         let mut parents = vec![0; hierarchy.nodes.len()];
         for (index, node) in hierarchy.nodes.iter().enumerate() {
             assert!(usize::from(node.lanes) <= LANES, "{name}");

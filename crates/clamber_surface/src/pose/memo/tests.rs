@@ -18,30 +18,24 @@ fn asked_count(memo: &Memo<usize>) -> usize {
     count
 }
 
-fn asked(memo: &Memo<usize>) -> Vec<usize> {
-    memo.asked()
-}
-
-fn filled(memo: &Memo<usize>) -> Vec<usize> {
-    memo.filled()
+/// The requested entries, and the entries that hold a value.
+fn entries(memo: &Memo<usize>) -> [Vec<usize>; 2] {
+    [memo.asked(), memo.filled()]
 }
 
 #[test]
 fn entries_are_computed_once_until_they_are_forgotten() {
     let mut memo = Memo::new(200);
     for entry in [3, 199, 64, 3] {
-        let first = !filled(&memo).contains(&entry);
+        let first = !memo.filled().contains(&entry);
         assert_eq!(ask(&memo, entry, entry), first);
     }
-    assert_eq!(
-        (asked(&memo), filled(&memo)),
-        (vec![3, 64, 199], vec![3, 64, 199])
-    );
+    assert_eq!(entries(&memo), [[3, 64, 199], [3, 64, 199]]);
     memo.forget(&[64, 65]);
-    assert_eq!((asked(&memo), memo.peek(64)), (vec![3, 199], None));
+    assert_eq!((memo.asked(), memo.peek(64)), (vec![3, 199], None));
     assert_eq!(asked_count(&memo), 2);
     memo.forget_all();
-    assert_eq!((asked(&memo), filled(&memo)), (vec![], vec![]));
+    assert_eq!(entries(&memo), [Vec::<usize>::new(), Vec::new()]);
     assert!(ask(&memo, 3, 7));
     memo.grow(300);
     assert!(ask(&memo, 299, 8) && !ask(&memo, 3, 7));
@@ -54,15 +48,12 @@ fn entries_that_were_filled_ahead_count_as_requested_only_once_they_are() {
     for entry in [2, 70, 90] {
         memo.fill_ahead(entry, |found| *found = 5);
     }
-    assert_eq!((asked(&memo), filled(&memo)), (vec![70], vec![2, 70, 90]));
+    assert_eq!(entries(&memo), [vec![70], vec![2, 70, 90]]);
     assert!(!ask(&memo, 90, 5) && !ask(&memo, 70, 5) && ask(&memo, 1, 6));
-    assert_eq!(
-        (asked(&memo), filled(&memo)),
-        (vec![1, 70, 90], vec![1, 2, 70, 90])
-    );
+    assert_eq!(entries(&memo), [vec![1, 70, 90], vec![1, 2, 70, 90]]);
     memo.forget_all();
     assert!(ask(&memo, 2, 3));
-    assert_eq!((asked(&memo), filled(&memo)), (vec![2], vec![2]));
+    assert_eq!(entries(&memo), [[2], [2]]);
     assert_eq!(asked_count(&memo), 1);
 }
 
@@ -73,15 +64,15 @@ fn an_entry_whose_computation_panics_can_be_requested_again() {
         let failed = || memo.get(7, |_: &mut usize| panic!("no value"));
         let failed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(failed));
         assert!(failed.is_err());
-        assert_eq!((asked(&memo), memo.peek(7)), (vec![], None));
+        assert_eq!((memo.asked(), memo.peek(7)), (vec![], None));
     }
     assert!(ask(&memo, 7, 3) && !ask(&memo, 7, 3));
-    assert_eq!((asked(&memo), filled(&memo)), (vec![7], vec![7]));
+    assert_eq!(entries(&memo), [[7], [7]]);
     memo.forget(&[7]);
-    assert_eq!((asked(&memo), asked_count(&memo)), (vec![], 0));
+    assert_eq!((memo.asked(), asked_count(&memo)), (vec![], 0));
     assert!(ask(&memo, 7, 4));
     memo.forget_all();
-    assert_eq!(asked(&memo), Vec::<usize>::new());
+    assert_eq!(memo.asked(), Vec::<usize>::new());
 }
 
 #[test]

@@ -1,14 +1,12 @@
 //! Closest points on the whole surface, compared with all triangles by another method.
 
-use std::sync::Arc;
-
 use clamber_verify::brute_force::distance;
 use glam::{DVec3, Vec3};
 
 use crate::geometry::widen;
-use crate::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use crate::mesh::MeshSource;
 use crate::surface::SkinnedSurface;
-use crate::testing::{direction, point};
+use crate::testing::{built, direction, point, positions_of, separate};
 
 /// Slivers of length 1 and height `height` around `center`, each with its own three vertices.
 fn slivers(rng: &mut fastrand::Rng, height: f32, center: Vec3) -> SkinnedSurface {
@@ -20,11 +18,7 @@ fn slivers(rng: &mut fastrand::Rng, height: f32, center: Vec3) -> SkinnedSurface
         positions.push(first + along);
         positions.push(first + along * rng.f32() + direction(rng) * height);
     }
-    let count = positions.len() as u32;
-    let triangles: Vec<[u32; 3]> = (0..count).step_by(3).map(|t| [t, t + 1, t + 2]).collect();
-    let source = MeshSource::rigid(&positions, &triangles);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
-    SkinnedSurface::new(Arc::new(mesh))
+    SkinnedSurface::new(built(&MeshSource::rigid(&positions, &separate(400))).into())
 }
 
 #[test]
@@ -34,16 +28,13 @@ fn closest_points_agree_with_brute_force_on_slivers_and_far_out() {
     for height in [1e-1, 1e-3, 1e-5, 1e-7] {
         for center in [Vec3::ZERO, Vec3::new(1000.0, -600.0, 500.0)] {
             let surface = slivers(&mut rng, height, center);
-            let mut positions = Vec::new();
-            surface.skin_all(&mut positions);
+            let positions = positions_of(&surface);
             for _ in 0..300 {
                 let away = [0.01, 1.0, 10.0][rng.usize(0..3)];
                 let near = positions[rng.usize(0..positions.len())];
                 let place = near + point(&mut rng, away);
-                let hit = surface
-                    .in_model()
-                    .closest_point(place, f32::INFINITY)
-                    .unwrap();
+                let space = surface.in_model();
+                let hit = space.closest_point(place, f32::INFINITY).unwrap();
                 let local = |id: usize| {
                     let corners = surface.mesh().triangles()[id];
                     corners.map(|v| widen(positions[v.index()]) - widen(place))

@@ -2,19 +2,18 @@
 
 use glam::Vec3;
 
-use crate::geometry::{Ray, Similarity};
+use crate::geometry::Ray;
 use crate::measure::BruteForce;
 use crate::mesh::TriangleId;
 use crate::surface::SkinnedSurface;
-use crate::testing::{bend, tube};
+use crate::testing::{advance, bend, tube};
 
 #[test]
 fn the_smaller_id_wins_among_equally_near_triangles() {
     let mesh = tube(5, 24);
     let mut surface = SkinnedSurface::new(mesh.clone());
     for angle in [0.0, 0.3] {
-        let bent = bend(5, glam::DVec3::Z, angle);
-        surface.advance(&bent, Similarity::IDENTITY).unwrap();
+        advance(&mut surface, &bend(5, glam::DVec3::Z, angle));
         let brute_force = BruteForce::new(surface.in_model());
         let (mut all, mut rays) = (Vec::new(), 0);
         for (vertex, p) in brute_force.positions().iter().enumerate() {
@@ -48,8 +47,7 @@ fn the_smaller_id_wins_among_equally_near_triangles() {
 
 #[test]
 fn a_ray_touches_few_clusters_behind_its_first_hit() {
-    let mesh = tube(40, 24);
-    let surface = SkinnedSurface::new(mesh);
+    let surface = SkinnedSurface::new(tube(40, 24));
     // Through the end cap, then along the skin from inside.
     let ray = Ray::new(Vec3::new(-1.0, 0.48, 0.01), Vec3::X).unwrap();
     let hit = surface.in_model().cast_ray(&ray, 100.0).unwrap();
@@ -63,13 +61,10 @@ fn a_ray_touches_few_clusters_behind_its_first_hit() {
 
 #[test]
 fn a_closest_point_query_touches_few_clusters_beyond_the_nearest_triangle() {
-    let mesh = tube(40, 24);
-    let surface = SkinnedSurface::new(mesh);
+    let surface = SkinnedSurface::new(tube(40, 24));
     let place = Vec3::new(20.1, 0.6, 0.02);
-    let hit = surface
-        .in_model()
-        .closest_point(place, f32::INFINITY)
-        .unwrap();
+    let hit = surface.in_model().closest_point(place, f32::INFINITY);
+    let hit = hit.unwrap();
     assert!((hit.distance - 0.1).abs() < 0.01, "{hit:?}");
     let touched = surface.diagnostics();
     assert!(

@@ -1,16 +1,14 @@
 //! Numbers at the limits of f32: creatures, queries and distances.
 
-use std::sync::Arc;
-
 use glam::Vec3;
 
-use super::places::{Place, assert_agree};
-use crate::geometry::{Affine, Capsule, Similarity};
+use super::places::{Place, assert_agree, assert_overlaps_agree, overlaps};
+use crate::geometry::{Affine, Capsule};
 use crate::measure::BruteForce;
-use crate::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use crate::mesh::MeshSource;
 use crate::rig::Palette;
 use crate::surface::SkinnedSurface;
-use crate::testing::{ball, bend, capsule, direction, point, tube};
+use crate::testing::{advance, ball, bend, built, capsule, direction, point, separate, tube};
 
 /// Number of joints of the tube.
 const JOINTS: u32 = 5;
@@ -25,19 +23,14 @@ fn scaled(scale: f32) -> SkinnedSurface {
     let matrices = bent.matrices().iter().map(|matrix| Affine {
         rows: matrix.rows.map(|row| row.map(|element| element * scale)),
     });
-    let palette = Palette::from_matrices(matrices);
-    surface.advance(&palette, Similarity::IDENTITY).unwrap();
+    advance(&mut surface, &Palette::from_matrices(matrices));
     surface
 }
 
 /// A triangle soup of one joint at rest.
 fn soup(corners: &[[Vec3; 3]]) -> SkinnedSurface {
-    let positions: Vec<Vec3> = corners.iter().flatten().copied().collect();
-    let count = corners.len() as u32;
-    let triangles: Vec<[u32; 3]> = (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    let source = MeshSource::rigid(&positions, &triangles);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
-    SkinnedSurface::new(Arc::new(mesh))
+    let triangles = separate(corners.len() as u32);
+    SkinnedSurface::new(built(&MeshSource::rigid(corners.as_flattened(), &triangles)).into())
 }
 
 fn any_place(rng: &mut fastrand::Rng, positions: &[Vec3], size: f32) -> Place {
@@ -136,7 +129,7 @@ fn a_capsule_whose_squared_length_overflows_still_overlaps_triangles() {
     let surface = scaled(1.0);
     let brute_force = BruteForce::new(surface.in_model());
     let mut rng = fastrand::Rng::with_seed(86);
-    let (mut hits, mut wanted, mut found) = (Vec::new(), Vec::new(), 0);
+    let mut found = 0;
     for size in [1e17, 1e18, 1e19, 3e19, 1e20, 1e25, 1e30, 3e38] {
         for _ in 0..40 {
             let along = [Vec3::X, direction(&mut rng)][rng.usize(0..2)] * size;
@@ -147,10 +140,7 @@ fn a_capsule_whose_squared_length_overflows_still_overlaps_triangles() {
                 middle + along * 0.5,
                 [1.0, size * 1e-2, size * 2.0][rng.usize(0..3)].min(f32::MAX),
             );
-            surface.in_model().overlap_capsule(&capsule, &mut hits);
-            brute_force.overlap_capsule(&capsule, &mut wanted);
-            assert_eq!(hits, wanted, "{capsule:?}");
-            found += hits.len();
+            found += overlaps(&surface, &brute_force, &capsule, "long").len();
         }
     }
     assert!(found > 10_000, "{found}");
@@ -159,7 +149,7 @@ fn a_capsule_whose_squared_length_overflows_still_overlaps_triangles() {
 #[test]
 fn a_capsule_that_nearly_touches_a_face_agrees_with_the_exact_test() {
     // The exact test takes a gap of 2^-48 of the lengths involved for a crossing.
-    let (mut hits, mut wanted, mut touched) = (Vec::new(), Vec::new(), 0);
+    let mut touched = 0;
     for gap in [1e-30, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10] {
         for size in [1.0, 100.0, 1e6] {
             let surface = soup(&[[
@@ -170,10 +160,8 @@ fn a_capsule_that_nearly_touches_a_face_agrees_with_the_exact_test() {
             let brute_force = BruteForce::new(surface.in_model());
             for length in [1.0, 100.0, 1e6, 1e12] {
                 let capsule = capsule(Vec3::new(-length, 0.0, 0.0), Vec3::ZERO, 0.0);
-                surface.in_model().overlap_capsule(&capsule, &mut hits);
-                brute_force.overlap_capsule(&capsule, &mut wanted);
-                assert_eq!(hits, wanted, "gap {gap}, size {size}, {capsule:?}");
-                touched += hits.len();
+                let case = format!("gap {gap}, size {size}");
+                touched += overlaps(&surface, &brute_force, &capsule, &case).len();
             }
         }
     }
@@ -183,7 +171,7 @@ fn a_capsule_that_nearly_touches_a_face_agrees_with_the_exact_test() {
 #[test]
 fn a_sphere_that_ends_at_a_face_agrees_with_the_exact_test() {
     // The face is beyond the sphere by less than f64 can resolve at that distance.
-    let (mut hits, mut wanted, mut touched) = (Vec::new(), Vec::new(), 0);
+    let mut touched = 0;
     for gap in [1e-12, 1e-10, 1e-9, 4e-9, 1e-7] {
         for radius in [1e6, 1e7, 1e8] {
             let surface = soup(&[[
@@ -193,10 +181,8 @@ fn a_sphere_that_ends_at_a_face_agrees_with_the_exact_test() {
             ]]);
             let brute_force = BruteForce::new(surface.in_model());
             let sphere = ball(Vec3::new(-radius, 0.0, 0.0), radius);
-            surface.in_model().overlap_capsule(&sphere, &mut hits);
-            brute_force.overlap_capsule(&sphere, &mut wanted);
-            assert_eq!(hits, wanted, "gap {gap}, {sphere:?}");
-            touched += hits.len();
+            let case = format!("gap {gap}");
+            touched += overlaps(&surface, &brute_force, &sphere, &case).len();
         }
     }
     assert!(touched > 5, "{touched}");
@@ -240,23 +226,15 @@ fn the_nearest_vertex_does_not_narrow_the_search_below_rounding() {
 fn capsules_as_long_as_numbers_allow_overlap_what_brute_force_says() {
     let mut rng = fastrand::Rng::with_seed(85);
     let surface = scaled(1.0);
-    let (space, brute_force) = (surface.in_model(), BruteForce::new(surface.in_model()));
-    let (mut hits, mut wanted, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
+    let brute_force = BruteForce::new(surface.in_model());
     let mut some = 0;
     for case in 0..400 {
         let mut end = || direction(&mut rng) * [1.0, 1e12, 1e20, f32::MAX][case % 4];
         let ends = [end(), end()];
         let radius = [0.3, 5.0, 1e10, 1e30][case / 4 % 4];
         let capsule = Capsule::new(ends[0], ends[1], radius).unwrap();
-        space.overlap_capsule(&capsule, &mut hits);
-        brute_force.overlap_capsule(&capsule, &mut wanted);
-        assert_eq!(hits, wanted, "{capsule:?}");
-        triangles.clear();
-        space.visit_triangles_in_capsule(&capsule, |triangle| triangles.push(triangle));
-        triangles.sort_unstable();
-        let wanted: Vec<_> = wanted.iter().map(|hit| hit.triangle).collect();
-        assert_eq!(triangles, wanted, "{capsule:?}");
-        some += usize::from(!wanted.is_empty() && wanted.len() < surface.mesh().triangles().len());
+        let found = assert_overlaps_agree(&surface, &brute_force, &capsule, "long");
+        some += usize::from(found > 0 && found < surface.mesh().triangles().len());
     }
     assert!(some > 10, "{some}");
 }

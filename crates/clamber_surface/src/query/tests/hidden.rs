@@ -1,11 +1,10 @@
 //! Hidden triangles must not narrow the search for visible ones.
 
 use super::places::{Place, assert_agree};
-use crate::geometry::Similarity;
 use crate::measure::BruteForce;
 use crate::mesh::{ColliderMesh, TriangleId, VertexId};
 use crate::surface::SkinnedSurface;
-use crate::testing::{bend, direction, tube};
+use crate::testing::{advance, ball, bend, direction, tube};
 
 fn around(mesh: &ColliderMesh, vertex: VertexId) -> Vec<TriangleId> {
     let triangles = mesh.triangles().iter().enumerate();
@@ -18,8 +17,7 @@ fn check(mut hide: impl FnMut(&mut SkinnedSurface, TriangleId)) {
     let mesh = tube(4, 12);
     let mut rng = fastrand::Rng::with_seed(81);
     let mut posed = SkinnedSurface::new(mesh.clone());
-    let bent = bend(4, glam::DVec3::Z, 0.3);
-    posed.advance(&bent, Similarity::IDENTITY).unwrap();
+    advance(&mut posed, &bend(4, glam::DVec3::Z, 0.3));
     for vertex in (0..mesh.positions().len() as u32).map(VertexId) {
         let mut surface = posed.clone();
         for triangle in around(&mesh, vertex) {
@@ -71,8 +69,8 @@ fn a_hidden_triangle_is_hidden_until_it_is_shown_again() {
         let corners = surface.instance.corners(id);
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         let mut hits = Vec::new();
-        let ball = crate::testing::ball(middle, 1e-4);
-        surface.in_model().overlap_capsule(&ball, &mut hits);
+        let around = ball(middle, 1e-4);
+        surface.in_model().overlap_capsule(&around, &mut hits);
         let found = hits.iter().any(|hit| hit.triangle == id);
         assert_eq!(found, shown[id.index()], "round {round}, {id}");
     }

@@ -2,37 +2,32 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::geometry::{Ray, Similarity};
+use crate::geometry::Ray;
 use crate::measure::winding_number;
 use crate::mesh::TriangleId;
 use crate::query::inside::DIRECTIONS;
 use crate::surface::SkinnedSurface;
-use crate::testing::{bend, point, tube};
+use crate::testing::{advance, bend, point, positions_of, tube};
 
 /// Compares at a point; returns the winding number.
 fn assert_agrees(surface: &SkinnedSurface, positions: &[Vec3], place: Vec3, case: &str) -> f64 {
     let winding = winding_number(positions, surface.mesh(), place.as_dvec3());
     let inside = surface.in_model().is_inside(place);
-    assert_eq!(
-        inside,
-        winding > 0.5,
-        "{case}: winds {winding} around {place}"
-    );
+    let wanted = winding > 0.5;
+    assert_eq!(inside, wanted, "{case}: winds {winding} around {place}");
     winding
 }
 
 #[test]
 fn a_bent_tube_that_overlaps_itself_agrees_with_the_solid_angle() {
     let mut rng = fastrand::Rng::with_seed(76);
-    let mesh = tube(10, 12);
-    let mut surface = SkinnedSurface::new(mesh);
+    let mut surface = SkinnedSurface::new(tube(10, 12));
     let (mut inside, mut overlapping) = (0, 0);
     // At the last angle the tube overlaps itself.
     for angle in [0.0, 0.2, 0.5, 0.9] {
         let bent = bend(10, DVec3::new(0.0, 0.8, 0.6), angle);
-        surface.advance(&bent, Similarity::IDENTITY).unwrap();
-        let mut positions = Vec::new();
-        surface.skin_all(&mut positions);
+        advance(&mut surface, &bent);
+        let positions = positions_of(&surface);
         for _ in 0..4_000 {
             let near = positions[rng.usize(0..positions.len())];
             let place = near + point(&mut rng, 0.6);
@@ -48,15 +43,12 @@ fn a_bent_tube_that_overlaps_itself_agrees_with_the_solid_angle() {
 fn a_ray_through_edges_and_corners_is_outvoted() {
     let mut rng = fastrand::Rng::with_seed(77);
     let mut surface = SkinnedSurface::new(tube(6, 8));
-    surface
-        .advance(&bend(6, DVec3::Z, 0.3), Similarity::IDENTITY)
-        .unwrap();
-    let mut positions = Vec::new();
-    surface.skin_all(&mut positions);
+    advance(&mut surface, &bend(6, DVec3::Z, 0.3));
+    let positions = positions_of(&surface);
     for direction in DIRECTIONS {
         for _ in 0..2_000 {
-            let corners =
-                surface.mesh().triangles()[rng.usize(0..surface.mesh().triangles().len())];
+            let triangles = surface.mesh().triangles();
+            let corners = triangles[rng.usize(0..triangles.len())];
             let [a, b, _] = corners.map(|v| positions[v.index()]);
             let target = a + (b - a) * [0.0, 0.5, rng.f32()][rng.usize(0..3)];
             let distance = (rng.f32() + 0.01) * [-1.0, 1.0, 3.0][rng.usize(0..3)];
@@ -92,16 +84,9 @@ fn an_open_sheet_has_no_inside_beyond_half_its_size() {
     // The end cap of a tube, seen from the front and from behind.
     let mut surface = SkinnedSurface::new(tube(3, 16));
     let mesh = surface.mesh().clone();
-    let caps: Vec<TriangleId> = (0..mesh.triangles().len() as u32)
-        .map(TriangleId)
-        .filter(|t| {
-            mesh.triangles()[t.index()]
-                .iter()
-                .any(|v| v.index() == mesh.positions().len() - 1)
-        })
-        .collect();
-    for triangle in (0..mesh.triangles().len() as u32).map(TriangleId) {
-        if !caps.contains(&triangle) {
+    let tip = mesh.positions().len() - 1;
+    for (triangle, corners) in (0..).map(TriangleId).zip(mesh.triangles()) {
+        if corners.iter().all(|v| v.index() != tip) {
             surface.disable_triangle(triangle).unwrap();
         }
     }

@@ -16,6 +16,37 @@ pub(super) struct Place {
     pub(super) reach: f32,
 }
 
+/// Compares the overlaps of a capsule with brute force, and returns them.
+pub(super) fn overlaps(
+    surface: &SkinnedSurface,
+    brute_force: &BruteForce<'_>,
+    capsule: &Capsule,
+    case: &str,
+) -> Vec<SurfaceHit> {
+    let (mut hits, mut wanted) = (Vec::new(), Vec::new());
+    surface.in_model().overlap_capsule(capsule, &mut hits);
+    brute_force.overlap_capsule(capsule, &mut wanted);
+    assert_eq!(hits, wanted, "{case}: overlap_capsule, {capsule:?}");
+    hits
+}
+
+/// [`overlaps`], compared also with the triangles in the capsule; returns their number.
+pub(super) fn assert_overlaps_agree(
+    surface: &SkinnedSurface,
+    brute_force: &BruteForce<'_>,
+    capsule: &Capsule,
+    case: &str,
+) -> usize {
+    let hits = overlaps(surface, brute_force, capsule, case);
+    let mut triangles = Vec::new();
+    let space = surface.in_model();
+    space.visit_triangles_in_capsule(capsule, |triangle| triangles.push(triangle));
+    triangles.sort_unstable();
+    let wanted: Vec<TriangleId> = hits.iter().map(|hit| hit.triangle).collect();
+    assert_eq!(triangles, wanted, "{case}: triangles, {capsule:?}");
+    hits.len()
+}
+
 /// Compares every query at a place; returns the number of hits.
 pub(super) fn assert_agree(
     surface: &SkinnedSurface,
@@ -51,16 +82,7 @@ pub(super) fn assert_agree(
         Capsule::new(origin, origin + towards, radius),
     ];
     for capsule in shapes.into_iter().flatten() {
-        surface.in_model().overlap_capsule(&capsule, &mut hits);
-        brute_force.overlap_capsule(&capsule, &mut wanted);
-        assert_eq!(hits, wanted, "{case}: overlap_capsule, {capsule:?}");
-        let mut triangles = Vec::new();
-        let space = surface.in_model();
-        space.visit_triangles_in_capsule(&capsule, |triangle| triangles.push(triangle));
-        triangles.sort_unstable();
-        let wanted: Vec<TriangleId> = wanted.iter().map(|hit| hit.triangle).collect();
-        assert_eq!(triangles, wanted, "{case}: triangles, {capsule:?}");
-        found += hits.len();
+        found += assert_overlaps_agree(surface, brute_force, &capsule, case);
     }
     found
 }

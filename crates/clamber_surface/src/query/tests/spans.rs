@@ -4,7 +4,7 @@ use crate::SimdLevel;
 use crate::geometry::{Similarity, rotation_from_axis_angle};
 use crate::measure::BruteForce;
 use crate::surface::{CastOptions, SkinnedSurface, SweepHit};
-use crate::testing::{bend, capsule, cases, tube};
+use crate::testing::{ball, bend, capsule, cases, tube};
 use fastrand::Rng;
 use glam::{DVec3, Vec3};
 
@@ -42,7 +42,7 @@ fn a_part_of_a_tick_has_the_bits_of_brute_force() {
             let (space, reference) = (surface.in_model(), BruteForce::new(surface.in_model()));
             let stick = match rng.bool() {
                 true => capsule(place(&mut rng), place(&mut rng), 0.05),
-                false => crate::testing::ball(place(&mut rng), 0.2),
+                false => ball(place(&mut rng), 0.2),
             };
             let way = place(&mut rng) - place(&mut rng);
             let ways = [way, if rng.bool() { way } else { place(&mut rng) }];
@@ -58,11 +58,8 @@ fn a_part_of_a_tick_has_the_bits_of_brute_force() {
             let wanted = reference.cast_capsule_where(&stick, ways, &options, &mut is_beyond);
             assert_eq!(beyond, wanted);
             overlapping += usize::from(beyond != hit);
-            *(if hit.is_some() {
-                &mut found
-            } else {
-                &mut missed
-            }) += 1;
+            found += usize::from(hit.is_some());
+            missed += usize::from(hit.is_none());
 
             let (mut all, mut expected) = (Vec::new(), Vec::new());
             for options in [options, past] {
@@ -72,10 +69,8 @@ fn a_part_of_a_tick_has_the_bits_of_brute_force() {
             }
             let mut counts = |hit: &SweepHit| hit.hit.triangle.0.is_multiple_of(3);
             let some = space.cast_capsule_where(&stick, ways, &options, &mut counts);
-            assert_eq!(
-                some,
-                reference.cast_capsule_where(&stick, ways, &options, &mut counts)
-            );
+            let wanted = reference.cast_capsule_where(&stick, ways, &options, &mut counts);
+            assert_eq!(some, wanted);
         }
     }
     assert!(
@@ -131,12 +126,12 @@ fn a_sweep_in_parts_meets_what_the_whole_sweep_meets() {
 fn a_part_that_is_none_finds_nothing() {
     let surface = SkinnedSurface::new(tube(4, 12));
     let stick = capsule(Vec3::new(1.5, 3.0, 0.0), Vec3::new(1.6, 3.0, 0.0), 0.1);
-    let cast = |options| {
-        surface
-            .in_model()
-            .cast_capsule(&stick, [Vec3::NEG_Y * 4.0; 2], &options)
+    let cast = |from, to| {
+        let options = CastOptions::MOVING.during(from, to);
+        let space = surface.in_model();
+        space.cast_capsule(&stick, [Vec3::NEG_Y * 4.0; 2], &options)
     };
-    assert!(cast(CastOptions::MOVING.during(0.25, 0.5)).is_some());
+    assert!(cast(0.25, 0.5).is_some());
     for (from, to) in [
         (0.5, 0.25),
         (-0.1, 0.5),
@@ -144,10 +139,6 @@ fn a_part_that_is_none_finds_nothing() {
         (f64::NAN, 1.0),
         (0.0, f64::NAN),
     ] {
-        assert_eq!(
-            cast(CastOptions::MOVING.during(from, to)),
-            None,
-            "{from} {to}"
-        );
+        assert_eq!(cast(from, to), None, "{from} {to}");
     }
 }

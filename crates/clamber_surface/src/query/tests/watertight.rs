@@ -1,56 +1,23 @@
 //! Rays from inside a closed mesh, at its edges and vertices, through the whole surface: bounds, cache and boxes
 //! included. Each of them must hit, since the mesh is closed.
 
-use core::f32::consts::PI;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3, Vec3};
 
-use crate::geometry::{Affine, Ray, Similarity, rotation_from_axis_angle, widen};
+use crate::geometry::{Affine, Ray, rotation_from_axis_angle, widen};
 use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use crate::rig::{JointId, Palette};
+use crate::rig::Palette;
 use crate::surface::SkinnedSurface;
-use crate::testing::{cases, point};
-
-/// Number of columns of the sphere, around Y.
-const COLUMNS: u32 = 200;
-
-/// Number of rows of the sphere, from pole to pole.
-const ROWS: u32 = 100;
+use crate::testing::{self, advance, cases, influence, point, positions_of};
 
 /// A sphere of radius 1 about `center`. Its south follows one joint and its north another, blended between.
 fn sphere(center: Vec3) -> Arc<ColliderMesh> {
-    let mut local = vec![Vec3::Y, -Vec3::Y];
-    for row in 1..ROWS {
-        let polar = PI * row as f32 / ROWS as f32;
-        for column in 0..COLUMNS {
-            let azimuth = 2.0 * PI * column as f32 / COLUMNS as f32;
-            let ring = libm::sinf(polar);
-            local.push(Vec3::new(
-                ring * libm::cosf(azimuth),
-                libm::cosf(polar),
-                ring * libm::sinf(azimuth),
-            ));
-        }
-    }
-    let at = |row: u32, column: u32| 2 + (row - 1) * COLUMNS + column % COLUMNS;
-    let mut triangles = Vec::new();
-    for column in 0..COLUMNS {
-        triangles.push([0, at(1, column + 1), at(1, column)]);
-        triangles.push([1, at(ROWS - 1, column), at(ROWS - 1, column + 1)]);
-        for row in 1..ROWS - 1 {
-            let (a, b) = (at(row, column), at(row, column + 1));
-            let (c, d) = (at(row + 1, column), at(row + 1, column + 1));
-            triangles.extend([[a, b, d], [a, d, c]]);
-        }
-    }
+    let (local, triangles) = testing::sphere(|_, _| 1.0);
     let influences: Vec<Influence> = local
         .iter()
         .flat_map(|p| [(0, 0.5 - 0.5 * p.y), (1, 0.5 + 0.5 * p.y)])
-        .map(|(joint, weight)| Influence {
-            joint: JointId(joint),
-            weight: weight.max(0.0),
-        })
+        .map(|(joint, weight)| influence(joint, weight.max(0.0)))
         .collect();
     let positions: Vec<Vec3> = local.iter().map(|p| *p + center).collect();
     let source = MeshSource {
@@ -78,8 +45,7 @@ fn pose(center: Vec3, angle: f64, shift: Vec3) -> Palette {
 /// The number of rays, aimed at points of edges or at vertices, that leave without a hit.
 fn leaks(surface: &SkinnedSurface, center: Vec3, rays: u32, at_vertices: bool) -> u32 {
     let mut rng = fastrand::Rng::with_seed(91);
-    let mut positions = Vec::new();
-    surface.skin_all(&mut positions);
+    let positions = positions_of(surface);
     let triangles = surface.mesh().triangles();
     let mut leaks = 0;
     for _ in 0..rays {
@@ -105,8 +71,7 @@ fn assert_watertight(rays: u32) {
     ] {
         let mut surface = SkinnedSurface::new(sphere(center));
         for angle in [0.0, 0.7] {
-            let palette = pose(center, angle, shift);
-            surface.advance(&palette, Similarity::IDENTITY).unwrap();
+            advance(&mut surface, &pose(center, angle, shift));
             for at_vertices in [false, true] {
                 let leaks = leaks(&surface, center + shift, rays, at_vertices);
                 let case = format!("{center} {shift} {angle} vertices {at_vertices}");

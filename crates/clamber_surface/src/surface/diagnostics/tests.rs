@@ -1,26 +1,25 @@
 use std::sync::Barrier;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::Diagnostics;
-use crate::geometry::{Ray, Similarity};
+use crate::geometry::Ray;
 use crate::mesh::TriangleId;
 use crate::surface::SkinnedSurface;
-use crate::testing::{ball, bend, cases, tube};
+use crate::testing::{advance, ball, bend, cases, tube};
 
 #[test]
 fn each_triangle_is_in_one_cluster_whose_flags_match_the_diagnostics() {
     let mesh = tube(24, 48);
     let mut surface = SkinnedSurface::new(mesh.clone());
-    let bent = bend(24, glam::DVec3::Z, 0.05);
-    surface.advance(&bent, Similarity::IDENTITY).unwrap();
+    let bent = bend(24, DVec3::Z, 0.05);
+    advance(&mut surface, &bent);
     let idle = surface.clusters();
     assert_eq!(idle.filter(|c| c.touched || c.skinned).count(), 0);
 
     // A ray through the tube, from above its middle.
-    let middle = surface
-        .in_model()
-        .position(mesh.triangles()[mesh.triangles().len() / 2][0]);
+    let corner = mesh.triangles()[mesh.triangles().len() / 2][0];
+    let middle = surface.in_model().position(corner);
     let above = middle.unwrap() + Vec3::Y * 100.0;
     let ray = Ray::new(above, Vec3::NEG_Y).unwrap();
     let hit = surface.in_model().cast_ray(&ray, 200.0).unwrap();
@@ -48,7 +47,7 @@ fn each_triangle_is_in_one_cluster_whose_flags_match_the_diagnostics() {
     assert_eq!(counts(&surface), told(&surface), "after a ray");
     assert!(told(&surface)[0] < surface.diagnostics().clusters / 2);
 
-    surface.advance(&bent, Similarity::IDENTITY).unwrap();
+    advance(&mut surface, &bent);
     surface.skin_ahead();
     surface.in_model().cast_ray(&ray, 200.0);
     assert_eq!(counts(&surface), told(&surface), "skinned ahead");
@@ -60,14 +59,12 @@ fn each_triangle_is_in_one_cluster_whose_flags_match_the_diagnostics() {
 fn ticks(threads: usize, count: u32) -> Vec<[Diagnostics; 2]> {
     /// Number of queries in a tick, shared among the threads.
     const QUERIES: usize = 8;
-    let mesh = tube(24, 48);
-    let mut surface = SkinnedSurface::new(mesh);
+    let mut surface = SkinnedSurface::new(tube(24, 48));
     let tick = |tick: u32| {
-        let bent = bend(24, glam::DVec3::Z, 1e-4 * f64::from(tick));
         // The radius reaches from some of the skin to all of it: just below and just above the share for which the next
         // tick is skinned ahead.
         let radius = 6.0 + 18.0 * (tick % 50) as f32 / 50.0;
-        surface.advance(&bent, Similarity::IDENTITY).unwrap();
+        advance(&mut surface, &bend(24, DVec3::Z, 1e-4 * f64::from(tick)));
         let ahead = surface.diagnostics();
         let sphere = ball(Vec3::ZERO, radius);
         let barrier = Barrier::new(threads);
@@ -110,8 +107,7 @@ fn lists_of_parts_take_no_memory_before_somebody_needs_them() {
     let anchor = surface.anchor(hit.triangle, hit.barycentric).unwrap();
     surface.in_model().motion(&anchor, 0.1).unwrap();
     surface.disable_part(hit.part).unwrap();
-    let bent = bend(24, glam::DVec3::Z, 0.05);
-    surface.advance(&bent, Similarity::IDENTITY).unwrap();
+    advance(&mut surface, &bend(24, DVec3::Z, 0.05));
     assert_eq!(surface.mesh().memory(), made);
 
     let lists = surface.mesh().parts().iter();

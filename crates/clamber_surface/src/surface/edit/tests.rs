@@ -7,31 +7,26 @@ mod sound;
 use std::sync::Arc;
 
 use self::model::Model;
-use self::sound::{assert_poses_hold, assert_sound, bits};
+use self::sound::{assert_poses_hold, assert_sound};
 use super::*;
 use crate::SimdLevel;
-use crate::geometry::{Ray, Similarity};
+use crate::geometry::Ray;
 use crate::mesh::{Influence, SurfaceKind, SurfaceTag, VertexId};
-use crate::rig::JointId;
 use crate::surface::Anchor;
 use crate::surface::agreement::{assert_queries_agree, assert_same_answers, questions};
-use crate::testing::{bend, tube};
+use crate::testing::{advance, bend, bits, influence, tube};
 use glam::{DVec3, Vec3};
 
 /// Influences of a vertex that follows one joint alone.
 fn rigid(joint: u32) -> [Influence; 1] {
-    [Influence {
-        joint: JointId(joint),
-        weight: 1.0,
-    }]
+    [influence(joint, 1.0)]
 }
 
 /// A tube that bent a moment ago, so that its two poses differ.
 fn bent(joints: u32, sides: u32) -> SkinnedSurface {
     let mut surface = SkinnedSurface::new(tube(joints, sides));
     for angle in [0.2, 0.3] {
-        let palette = bend(joints, DVec3::Z, angle);
-        surface.advance(&palette, Similarity::IDENTITY).unwrap();
+        advance(&mut surface, &bend(joints, DVec3::Z, angle));
     }
     surface
 }
@@ -40,8 +35,7 @@ fn bent(joints: u32, sides: u32) -> SkinnedSurface {
 fn on_every_level() -> Vec<(SkinnedSurface, Model, fastrand::Rng)> {
     let edited = |level: SimdLevel| {
         let mut surface = SkinnedSurface::with_simd_level(tube(5, 16), level);
-        let palette = bend(5, DVec3::Z, 0.3);
-        surface.advance(&palette, Similarity::IDENTITY).unwrap();
+        advance(&mut surface, &bend(5, DVec3::Z, 0.3));
         let model = Model::of(&surface);
         (surface, model, fastrand::Rng::with_seed(94))
     };
@@ -79,10 +73,9 @@ fn all_instruction_sets_and_skinning_ahead_agree_after_edits() {
 #[test]
 fn an_added_vertex_moves_from_its_position_under_the_old_palette() {
     let mut surface = bent(4, 8);
-    let influences = [0, 2, 3].map(|joint| rigid(joint)[0]);
+    let influences = [0, 2, 3].map(|joint| influence(joint, 1.0));
     let position = Vec3::new(1.3, 4.0, -0.2);
-    let vertex = surface.edit(|edit| edit.add_vertex(position, &influences));
-    let vertex = vertex.unwrap();
+    let vertex = surface.edit(|edit| edit.add_vertex(position, &influences).unwrap());
     let weights: Vec<_> = surface.mesh().influences(vertex).collect();
     assert_eq!(weights.iter().map(|(_, w)| w).sum::<f32>(), 1.0);
     let at = |palette: &[crate::geometry::Affine]| {
@@ -174,10 +167,8 @@ fn an_edit_does_not_change_other_surfaces_that_share_the_mesh() {
     one.edit(|edit| edit.remove_vertex(VertexId(7))).unwrap();
     assert_eq!(Arc::as_ptr(one.mesh()), own, "one copy is enough");
     assert!(Arc::ptr_eq(other.mesh(), &before));
-    assert_eq!(
-        other.mesh().tags().to_vec(),
-        vec![SurfaceTag::default(); before.tags().len()]
-    );
+    let tags = vec![SurfaceTag::default(); before.tags().len()];
+    assert_eq!(other.mesh().tags().to_vec(), tags);
     assert!(other.mesh().has_vertex(VertexId(7)) && !one.mesh().has_vertex(VertexId(7)));
     assert_sound(other.mesh(), "the other one");
 }
@@ -240,11 +231,9 @@ fn points_are_valid_on_meshes_that_continue_theirs_and_on_no_other() {
     let hit = high.in_model().cast_ray(&down, 10.0).unwrap();
     let at_hit = high.anchor_at(&hit).unwrap();
     for surface in [&original, &high, &low, &again] {
-        assert!(
-            [before, after, at_hit]
-                .iter()
-                .all(|built| holds(surface, built))
-        );
+        for built in [before, after, at_hit] {
+            assert!(holds(surface, &built), "{built:?}");
+        }
     }
     // Edits that change the meaning of no triangle change no mesh id.
     let mut tagged = with_scab(3.0).0;

@@ -3,7 +3,7 @@ use crate::geometry::{Affine, Ray, Similarity, rotation_from_axis_angle};
 use crate::rig::Palette;
 use crate::surface::SkinnedSurface;
 use crate::surface::deformation::is_collapsed;
-use crate::testing::{bend, rigid, tube};
+use crate::testing::{advance, bend, rigid, tube};
 
 /// Number of joints of the tube.
 const JOINTS: u32 = 5;
@@ -43,9 +43,7 @@ fn a_rigid_turn_gives_finite_displacement_and_exact_rotation() {
     let dt = 0.1;
     // A third of a turn in one tick: omega x r would be far off.
     let turn = rotation_from_axis_angle(DVec3::Z, 2.0);
-    surface
-        .advance(&rigid(JOINTS, turn, DVec3::X), Similarity::IDENTITY)
-        .unwrap();
+    advance(&mut surface, &rigid(JOINTS, turn, DVec3::X));
     let motion = surface.in_model().motion(&anchor, dt).unwrap();
     let expected = turn * widen(motion.previous_position) + DVec3::X;
     assert!((widen(motion.position) - expected).length() < 1e-6);
@@ -81,9 +79,7 @@ fn a_moving_root_moves_the_point_in_the_current_model_frame() {
 fn stretches_and_area_of_pure_scale() {
     let mut surface = surface();
     let anchor = anchor(&surface);
-    surface
-        .advance(&scaled(2.0, 1.0, 1.5), Similarity::IDENTITY)
-        .unwrap();
+    advance(&mut surface, &scaled(2.0, 1.0, 1.5));
     let motion = surface.in_model().motion(&anchor, 1.0).unwrap();
     // The top of the tube lies nearly in the XZ plane.
     assert!((motion.stretches[0] - 2.0).abs() < 0.02, "{motion:?}");
@@ -118,18 +114,12 @@ fn a_collapsed_triangle_keeps_the_last_frame_and_stays_finite() {
     let mut surface = surface();
     let mut anchor = anchor(&surface);
     let turn = rotation_from_axis_angle(DVec3::X, 0.4);
-    surface
-        .advance(&rigid(JOINTS, turn, DVec3::ZERO), Similarity::IDENTITY)
-        .unwrap();
+    advance(&mut surface, &rigid(JOINTS, turn, DVec3::ZERO));
     let motion = surface.in_model().motion(&anchor, 0.1).unwrap();
-    surface
-        .advance(&scaled(0.0, 0.0, 0.0), Similarity::IDENTITY)
-        .unwrap();
+    advance(&mut surface, &scaled(0.0, 0.0, 0.0));
     // Even an anchor whose frame was not updated has the frame of a tick ago.
-    assert_eq!(
-        surface.in_model().motion(&anchor, 0.1).unwrap().frame,
-        motion.frame
-    );
+    let kept = surface.in_model().motion(&anchor, 0.1).unwrap();
+    assert_eq!(kept.frame, motion.frame);
     anchor.frame = motion.frame;
     for _ in 0..2 {
         let held = surface.in_model().motion(&anchor, 0.1).unwrap();
@@ -137,9 +127,7 @@ fn a_collapsed_triangle_keeps_the_last_frame_and_stays_finite() {
         assert!((held.normal - motion.normal).length() < 1e-3, "{held:?}");
         assert!(held.velocity.is_finite() && held.angular_velocity.is_finite());
         assert!(held.stretches.iter().all(|s| s.is_finite()) && held.area_ratio.is_finite());
-        surface
-            .advance(&scaled(0.0, 0.0, 0.0), Similarity::IDENTITY)
-            .unwrap();
+        advance(&mut surface, &scaled(0.0, 0.0, 0.0));
     }
 }
 
@@ -179,22 +167,18 @@ fn an_anchor_follows_bending_skin_at_fixed_corner_weights() {
     let mut surface = surface();
     let anchor = anchor(&surface);
     for step in 0..100 {
-        let palette = bend(JOINTS, DVec3::Z, f64::from(step) * 0.01);
-        surface.advance(&palette, Similarity::IDENTITY).unwrap();
+        advance(
+            &mut surface,
+            &bend(JOINTS, DVec3::Z, f64::from(step) * 0.01),
+        );
         let motion = surface.in_model().motion(&anchor, 1.0 / 60.0).unwrap();
         let corners = surface.instance.corners(anchor.triangle).map(widen);
-        let by_hand: DVec3 = (0..3)
-            .map(|k| corners[k] * f64::from(anchor.barycentric[k]))
-            .sum();
-        assert!(
-            (by_hand - widen(motion.position)).length() < 1e-6,
-            "step {step}"
-        );
-        let on_skin = surface
-            .in_model()
-            .closest_point(motion.position, 1.0)
-            .unwrap();
-        assert!(on_skin.distance < 1e-6, "step {step}: {}", on_skin.distance);
+        let shares = (0..3).map(|k| corners[k] * f64::from(anchor.barycentric[k]));
+        let off = (shares.sum::<DVec3>() - widen(motion.position)).length();
+        assert!(off < 1e-6, "step {step}: {off}");
+        let on_skin = surface.in_model().closest_point(motion.position, 1.0);
+        let off = on_skin.unwrap().distance;
+        assert!(off < 1e-6, "step {step}: {off}");
     }
 }
 
@@ -206,9 +190,7 @@ fn bad_anchors_and_ticks_are_refused() {
         assert!(surface.in_model().motion(&good, dt).is_err(), "{dt}");
     }
     let mut moved = surface.clone();
-    moved
-        .advance(&bend(JOINTS, DVec3::Z, 0.1), Similarity::IDENTITY)
-        .unwrap();
+    advance(&mut moved, &bend(JOINTS, DVec3::Z, 0.1));
     assert!(moved.in_model().motion(&good, 1e-300).is_err());
     for barycentric in [[0.5, 0.6, 0.1], [f32::NAN, 0.5, 0.5], [-0.5, 1.0, 0.5]] {
         assert!(surface.anchor(good.triangle, barycentric).is_err());
@@ -245,9 +227,7 @@ fn ratios_beyond_f32_are_clamped_to_its_largest_number() {
     let mut surface = surface();
     let anchor = anchor(&surface);
     for size in [1e-20, 1e20] {
-        surface
-            .advance(&scaled(size, size, size), Similarity::IDENTITY)
-            .unwrap();
+        advance(&mut surface, &scaled(size, size, size));
     }
     let motion = surface.in_model().motion(&anchor, 1.0).unwrap();
     assert_eq!(motion.area_ratio, f32::MAX);
@@ -272,7 +252,7 @@ fn a_path_has_the_bits_of_the_motion() {
         let path = surface.in_world().path(&anchor, dt).unwrap();
         let wanted = (motion.position, motion.previous_position, motion.velocity);
         let found = (path.position, path.previous_position, path.velocity);
-        assert_eq!(found, wanted, "step {step}");
+        assert_eq!(found, wanted, "in the world, step {step}");
     }
     for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let path = surface.in_model().path(&anchor, dt);

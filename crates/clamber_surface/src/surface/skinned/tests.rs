@@ -5,7 +5,7 @@ use crate::mesh::{PaletteError, TriangleId, VertexId};
 use crate::mesh::{PartId, SurfaceTag};
 use crate::rig::JointId;
 use crate::surface::agreement::assert_queries_agree;
-use crate::testing::{bend, rigid, tube};
+use crate::testing::{advance, bend, positions_of, rigid, tube};
 use glam::{DQuat, DVec3};
 
 /// Number of joints of the tube.
@@ -15,10 +15,12 @@ fn surface() -> SkinnedSurface {
     SkinnedSurface::new(tube(JOINTS, 12))
 }
 
-fn positions_of(surface: &SkinnedSurface) -> Vec<Vec3> {
-    let mut positions = Vec::new();
-    surface.skin_all(&mut positions);
-    positions
+/// Asserts where the vertices were a tick ago.
+fn assert_previous(surface: &SkinnedSurface, positions: &[Vec3], case: &str) {
+    for (v, position) in (0..).map(VertexId).zip(positions) {
+        let previous = surface.in_model().previous_position(v);
+        assert_eq!(previous, Some(*position), "{case}: vertex {v}");
+    }
 }
 
 #[test]
@@ -27,7 +29,7 @@ fn queries_agree_with_brute_force_in_every_pose() {
     let mut surface = surface();
     for angle in [0.0, 0.4, -1.2, 2.5] {
         let palette = bend(JOINTS, DVec3::new(0.0, 0.6, 0.8), angle);
-        surface.advance(&palette, Similarity::IDENTITY).unwrap();
+        advance(&mut surface, &palette);
         let found = assert_queries_agree(&surface, &mut rng, 60);
         assert!(found > 1_000, "only {found} hits at angle {angle}");
     }
@@ -38,8 +40,7 @@ fn no_bound_hides_its_outermost_vertices() {
     // Rays that pass just inside each vertex of a part, at right angles to its direction from the sphere's centre, and
     // points beyond the vertex.
     let mut surface = surface();
-    let palette = bend(JOINTS, DVec3::new(0.6, 0.0, 0.8), 0.6);
-    surface.advance(&palette, Similarity::IDENTITY).unwrap();
+    advance(&mut surface, &bend(JOINTS, DVec3::new(0.6, 0.0, 0.8), 0.6));
     let brute_force = BruteForce::new(surface.in_model());
     let mut met = 0;
     for (part, sphere) in surface.in_model().part_spheres() {
@@ -73,7 +74,6 @@ fn no_bound_hides_its_outermost_vertices() {
 fn queries_agree_with_brute_force_after_edits() {
     let mut rng = fastrand::Rng::with_seed(22);
     let mut surface = surface();
-    let palette = bend(JOINTS, DVec3::Z, 0.5);
     let mut removed = Vec::new();
     for round in 0..60 {
         let count = surface.mesh().triangles().len() as u32;
@@ -94,20 +94,19 @@ fn queries_agree_with_brute_force_after_edits() {
             _ => surface.enable_part(PartId(rng.u32(0..JOINTS))).unwrap(),
         }
         if round == 30 {
-            surface.advance(&palette, Similarity::IDENTITY).unwrap();
+            advance(&mut surface, &bend(JOINTS, DVec3::Z, 0.5));
         }
         assert_queries_agree(&surface, &mut rng, 4);
     }
     assert!(!removed.is_empty());
     assert!(surface.mesh().triangles().len() > tube(JOINTS, 12).triangles().len());
     for triangle in removed {
-        assert_eq!(
-            surface.anchor(triangle, [1.0, 0.0, 0.0]),
-            Err(SurfaceError::Triangle(triangle))
-        );
+        let refused = SurfaceError::Triangle(triangle);
+        let anchor = surface.anchor(triangle, [1.0, 0.0, 0.0]);
+        assert_eq!(anchor, Err(refused.clone()));
         assert!(surface.enable_triangle(triangle).is_err());
         let again = surface.edit(|edit| edit.remove_triangle(triangle));
-        assert_eq!(again, Err(SurfaceError::Triangle(triangle)));
+        assert_eq!(again, Err(refused));
     }
 }
 
@@ -126,10 +125,8 @@ fn rays_pass_through_disabled_triangles_and_parts() {
     let mut surface = surface();
     let ray = Ray::new(Vec3::new(2.1, 5.0, 0.1), -Vec3::Y).unwrap();
     let front = surface.in_model().cast_ray(&ray, 100.0).unwrap();
-    assert!(
-        front.normal.y > 0.9 && (front.distance - 4.5).abs() < 0.05,
-        "{front:?}"
-    );
+    let off = (front.distance - 4.5).abs();
+    assert!(front.normal.y > 0.9 && off < 0.05, "{front:?}");
     surface.disable_triangle(front.triangle).unwrap();
     let back = surface.in_model().cast_ray(&ray, 100.0).unwrap();
     assert!(back.normal.y < -0.9 && back.distance > 5.0, "{back:?}");
@@ -144,22 +141,13 @@ fn rays_pass_through_disabled_triangles_and_parts() {
 fn previous_positions_are_those_of_the_last_tick_if_the_root_rests() {
     let mut surface = surface();
     let world = Similarity::from_translation(DVec3::new(1e5, 3.0, 0.0));
-    surface.place(&bend(JOINTS, DVec3::Z, 0.1), world).unwrap();
+    let bent = |angle: f64| bend(JOINTS, DVec3::Z, angle);
+    surface.place(&bent(0.1), world).unwrap();
     let before = positions_of(&surface);
-    surface
-        .advance(&bend(JOINTS, DVec3::Z, 0.2), world)
-        .unwrap();
-    for (v, position) in before.iter().enumerate() {
-        let previous = surface
-            .in_model()
-            .previous_position(VertexId(v as u32))
-            .unwrap();
-        assert_eq!(previous, *position, "vertex {v}");
-    }
-    assert_eq!(
-        surface.in_model().previous_position(VertexId(u32::MAX)),
-        None
-    );
+    surface.advance(&bent(0.2), world).unwrap();
+    assert_previous(&surface, &before, "far out");
+    let none = surface.in_model().previous_position(VertexId(u32::MAX));
+    assert_eq!(none, None);
 }
 
 #[test]
@@ -168,11 +156,8 @@ fn previous_positions_are_those_of_the_last_tick_over_many_ticks() {
     for tick in 0..6 {
         let before = positions_of(&surface);
         let bent = bend(JOINTS, DVec3::Z, 0.1 * f64::from(tick + 1));
-        surface.advance(&bent, Similarity::IDENTITY).unwrap();
-        for (v, position) in before.iter().enumerate() {
-            let previous = surface.in_model().previous_position(VertexId(v as u32));
-            assert_eq!(previous, Some(*position), "tick {tick}, vertex {v}");
-        }
+        advance(&mut surface, &bent);
+        assert_previous(&surface, &before, &format!("tick {tick}"));
     }
 }
 
@@ -186,41 +171,29 @@ fn previous_positions_follow_a_moving_root_far_from_the_origin() {
         translation: DVec3::new(1e5 + x, 20.0, -7e4),
     };
     surface.place(&palette, world(0.3, 0.0)).unwrap();
-    let at = |surface: &SkinnedSurface, v: usize| {
-        surface
-            .world_from_model()
-            .transform_point_f32(surface.in_model().position(VertexId(v as u32)).unwrap())
+    let vertices = (0..40).map(VertexId);
+    let at = |v| {
+        let position = surface.in_model().position(v).unwrap();
+        surface.world_from_model().transform_point_f32(position)
     };
-    let before: Vec<DVec3> = (0..40).map(|v| at(&surface, v)).collect();
+    let before: Vec<DVec3> = vertices.clone().map(at).collect();
     surface.advance(&palette, world(0.35, 0.8)).unwrap();
-    for (v, before) in before.iter().enumerate() {
-        let previous = surface
-            .in_model()
-            .previous_position(VertexId(v as u32))
-            .unwrap();
+    for (v, before) in vertices.zip(before) {
+        let previous = surface.in_model().previous_position(v).unwrap();
         let previous = surface.world_from_model().transform_point_f32(previous);
         // The error of coordinates of up to 25 m in f32, and of f64 at 1e5 m.
-        assert!(
-            (previous - *before).length() < 2e-5,
-            "vertex {v}: {previous} {before}"
-        );
+        let off = (previous - before).length();
+        assert!(off < 2e-5, "vertex {v}: {previous} {before}");
     }
 }
 
 #[test]
 fn place_leaves_no_motion() {
     let mut surface = surface();
-    surface
-        .advance(&bend(JOINTS, DVec3::Z, 0.3), Similarity::IDENTITY)
-        .unwrap();
+    advance(&mut surface, &bend(JOINTS, DVec3::Z, 0.3));
     let far = Similarity::from_translation(DVec3::splat(1e4));
     surface.place(&bend(JOINTS, DVec3::Z, -0.3), far).unwrap();
-    for (v, position) in positions_of(&surface).iter().enumerate() {
-        assert_eq!(
-            surface.in_model().previous_position(VertexId(v as u32)),
-            Some(*position)
-        );
-    }
+    assert_previous(&surface, &positions_of(&surface), "placed");
 }
 
 #[test]
@@ -237,10 +210,10 @@ fn a_sleeping_surface_answers_and_does_not_move() {
         surface.in_model().position(VertexId(0))
     );
     surface.sleep();
-    for (v, position) in positions_of(&awake).iter().enumerate() {
-        let v = VertexId(v as u32);
-        assert_eq!(surface.in_model().position(v), Some(*position));
-        assert_eq!(surface.in_model().previous_position(v), Some(*position));
+    let positions = positions_of(&awake);
+    assert_previous(&surface, &positions, "asleep");
+    for (v, position) in (0..).map(VertexId).zip(positions) {
+        assert_eq!(surface.in_model().position(v), Some(position));
     }
     let ray = Ray::new(Vec3::new(1.0, 4.0, 0.2), -Vec3::Y).unwrap();
     let hit = surface.in_model().cast_ray(&ray, 10.0);
@@ -265,12 +238,9 @@ fn the_bounding_ball_holds_all_skin_over_the_tick() {
         let (center, radius) = surface.bounding_ball().unwrap();
         let place = *surface.world_from_model();
         let mut farthest = 0.0_f64;
-        for v in 0..surface.mesh().positions().len() as u32 {
-            let (now, before) = (
-                surface.in_model().position(VertexId(v)),
-                surface.in_model().previous_position(VertexId(v)),
-            );
-            for at in [now, before] {
+        for v in (0..surface.mesh().positions().len() as u32).map(VertexId) {
+            let space = surface.in_model();
+            for at in [space.position(v), space.previous_position(v)] {
                 let at = place.transform_point_f32(at.unwrap());
                 farthest = farthest.max(at.distance(center));
             }
@@ -301,13 +271,11 @@ fn mirrored_joints_keep_outward_normals() {
     let mut mirror = Affine::IDENTITY;
     mirror.rows[2][2] = -1.0;
     let palette = Palette::from_matrices((0..JOINTS).map(|_| mirror));
-    surface.advance(&palette, Similarity::IDENTITY).unwrap();
+    advance(&mut surface, &palette);
     for origin in [Vec3::new(2.1, 5.0, 0.1), Vec3::new(2.1, 0.1, -5.0)] {
         let inward = Vec3::new(2.1, 0.05, 0.05) - origin;
-        let hit = surface
-            .in_model()
-            .cast_ray(&Ray::new(origin, inward).unwrap(), 100.0)
-            .unwrap();
+        let ray = Ray::new(origin, inward).unwrap();
+        let hit = surface.in_model().cast_ray(&ray, 100.0).unwrap();
         assert!(hit.normal.dot(inward) < 0.0, "{hit:?}");
     }
 }
@@ -316,7 +284,7 @@ fn mirrored_joints_keep_outward_normals() {
 fn bad_palettes_and_placements_change_nothing() {
     let mut surface = surface();
     let good = bend(JOINTS, DVec3::Z, 0.2);
-    surface.advance(&good, Similarity::IDENTITY).unwrap();
+    advance(&mut surface, &good);
     let before = positions_of(&surface);
     let refused = |surface: &mut SkinnedSurface, palette: &Palette, world: Similarity| {
         let by_advance = surface.advance(palette, world).unwrap_err();
@@ -324,13 +292,11 @@ fn bad_palettes_and_placements_change_nothing() {
         by_advance
     };
     let short = bend(JOINTS - 1, DVec3::Z, 0.2);
-    assert!(matches!(
+    let (expected, found) = (6, 5);
+    assert_eq!(
         refused(&mut surface, &short, Similarity::IDENTITY),
-        SurfaceError::Palette(PaletteError::JointCount {
-            expected: 6,
-            found: 5
-        })
-    ));
+        PaletteError::JointCount { expected, found }.into()
+    );
     for bad in [f32::NAN, f32::INFINITY, 2e30] {
         let mut matrices = good.matrices().to_vec();
         matrices[3].rows[1][3] = bad;
@@ -341,18 +307,12 @@ fn bad_palettes_and_placements_change_nothing() {
             "{bad}"
         );
     }
-    let mut world = Similarity::IDENTITY;
-    world.scale = 0.0;
-    assert_eq!(
-        refused(&mut surface, &good, world),
-        SurfaceError::WorldFromModel
-    );
+    let flat = refused(&mut surface, &good, Similarity::from_scale(0.0));
+    assert_eq!(flat, SurfaceError::WorldFromModel);
     // A teleport by `advance` would need a displacement whose square overflows f32.
     let far = Similarity::from_translation(DVec3::splat(1e40));
-    assert!(matches!(
-        surface.advance(&good, far),
-        Err(SurfaceError::Palette(_))
-    ));
+    let found = surface.advance(&good, far);
+    assert!(matches!(found, Err(SurfaceError::Palette(_))));
     assert_eq!(positions_of(&surface), before);
     assert_eq!(*surface.world_from_model(), Similarity::IDENTITY);
 }
@@ -364,15 +324,10 @@ fn a_rigid_move_moves_hits_rigidly() {
     let before = surface.in_model().cast_ray(&ray, 100.0).unwrap();
     let turn = rotation_from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 1.9);
     let shift = DVec3::new(3.0, -1.0, 0.5);
-    surface
-        .advance(&rigid(JOINTS, turn, shift), Similarity::IDENTITY)
-        .unwrap();
+    advance(&mut surface, &rigid(JOINTS, turn, shift));
     let carry = |v: Vec3, t: DVec3| crate::geometry::round_to_f32(turn * widen(v) + t);
-    let moved = Ray::new(
-        carry(ray.origin(), shift),
-        carry(ray.direction(), DVec3::ZERO),
-    )
-    .unwrap();
+    let direction = carry(ray.direction(), DVec3::ZERO);
+    let moved = Ray::new(carry(ray.origin(), shift), direction).unwrap();
     let after = surface.in_model().cast_ray(&moved, 100.0).unwrap();
     assert_eq!(after.triangle, before.triangle);
     assert!((after.distance - before.distance).abs() < 1e-5);

@@ -14,10 +14,11 @@ use clamber_surface::surface::SkinnedSurface;
 use glam::{DQuat, DVec3, Vec3};
 use rapier3d::prelude::*;
 
-use super::scene::{lifted, slab};
+use super::scene::{add_rock, bits, slab, step};
 use crate::ObstacleId;
 use crate::debris::inner_capsule::InnerCapsule;
 use crate::debris::{Debris, DebrisConfig, DebrisReport};
+use crate::testing::rest;
 
 /// The influence of each vertex of a creature: its one joint.
 const BONE: Influence = Influence {
@@ -75,6 +76,14 @@ impl Stage {
         parameters.normalized_max_linear_velocity = f32::MAX;
     }
 
+    /// A stage with one creature, around the origin of the frame.
+    fn with_creature(rate: u32, frame: DVec3, half: DVec3, scale: f64) -> Self {
+        let mut stage = Self::new(rate, frame);
+        stage.creature(3, half, scale);
+        stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
+        stage
+    }
+
     /// A creature of a size in the world, `scale` times as large there as in its model space.
     fn creature(&mut self, id: u64, half: DVec3, scale: f64) {
         let in_model = (half / scale).as_vec3();
@@ -99,12 +108,7 @@ impl Stage {
         let body = RigidBodyBuilder::dynamic()
             .translation(place.as_vec3())
             .linvel(self.frame.as_vec3());
-        let (body, _) = self
-            .world
-            .insert(body, shape.clone().friction(0.8).density(2500.0));
-        self.debris
-            .add(body, &mut self.world.bodies, &self.world.colliders)
-            .unwrap();
+        let (body, _) = add_rock(&mut self.world, &mut self.debris, body, shape.clone());
         self.rocks.push(body);
         body
     }
@@ -123,10 +127,9 @@ impl Stage {
                 scale,
                 translation: place + shift,
             };
-            let palette = lifted(1, |_| 0.0);
             match *does {
-                Does::Moves(place) => creature.surface.advance(&palette, to(place)).unwrap(),
-                Does::IsPlaced(place) => creature.surface.place(&palette, to(place)).unwrap(),
+                Does::Moves(place) => creature.surface.advance(&rest(), to(place)).unwrap(),
+                Does::IsPlaced(place) => creature.surface.place(&rest(), to(place)).unwrap(),
                 Does::IsAway => {}
             }
         }
@@ -148,43 +151,21 @@ impl Stage {
         let here = self.creatures.iter().zip(does);
         let here = here.filter(|(_, does)| !matches!(does, Does::IsAway));
         let list: Vec<_> = here.map(|(one, _)| (one.id, &one.surface)).collect();
-        let world = &mut self.world;
-        self.debris
-            .before_step(&list, &mut world.bodies, &mut world.colliders, self.dt)
-            .unwrap();
-        world.step_with_events(&self.debris, &());
-        let report = self
-            .debris
-            .after_step(
-                &list,
-                &mut world.bodies,
-                &world.colliders,
-                &world.broad_phase,
-                &world.narrow_phase,
-                self.dt,
-            )
-            .unwrap();
+        let report = step(&mut self.world, &mut self.debris, &list, self.dt);
         let mut told = 0;
         for rock in &self.rocks {
             let passes = self.debris.is_let_through(*rock) || self.debris.is_put_out(*rock);
             told += u32::from(passes);
-            for (creature, _) in self.creatures.iter().zip(does).filter(|(one, _)| {
-                // Only creatures that are here.
-                list.iter().any(|(id, _)| *id == one.id)
-            }) {
+            let is_here = |one: &&Creature| list.iter().any(|(id, _)| *id == one.id);
+            for creature in self.creatures.iter().filter(is_here) {
                 let off = self.place(*rock) - creature.middle(self.shift());
                 let inside = off.abs().cmplt(creature.half * 0.999).all();
-                assert!(
-                    !inside || passes,
-                    "{case}, tick {}: a rock stays {off} from the middle",
-                    self.ticks
-                );
+                let now = format_args!("{case}, tick {}", self.ticks);
+                assert!(!inside || passes, "{now}: stays {off} from the middle");
             }
         }
-        assert!(
-            told <= report.caught + report.put_out,
-            "{case}: {told} rocks, {report:?}"
-        );
+        let counted = report.caught + report.put_out;
+        assert!(told <= counted, "{case}: {told} rocks, {report:?}");
         report
     }
 
@@ -199,17 +180,7 @@ impl Stage {
     }
 
     fn bits(&self) -> Vec<u32> {
-        let bodies = self.rocks.iter().map(|rock| &self.world.bodies[*rock]);
-        let numbers = bodies.flat_map(|body| {
-            let place = body.translation().to_array().into_iter();
-            let turn = body.rotation().to_array();
-            let speed = body.linvel().to_array();
-            place
-                .chain(turn)
-                .chain(speed)
-                .chain(body.angvel().to_array())
-        });
-        numbers.map(f32::to_bits).collect()
+        bits(self.rocks.iter().map(|rock| &self.world.bodies[*rock]))
     }
 }
 
@@ -219,8 +190,11 @@ impl Creature {
     }
 }
 
+/// A rate, a frame, and the scale of a creature.
+type Setting = (u32, DVec3, f64);
+
 /// Rates, frames, and scales of creatures, one after the other.
-fn settings() -> impl Iterator<Item = (u32, DVec3, f64)> {
+fn settings() -> impl Iterator<Item = Setting> {
     let frames = [
         DVec3::ZERO,
         DVec3::X * 30.0,

@@ -1,10 +1,12 @@
 use clamber_surface::geometry::Similarity;
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 use rapier3d::prelude::*;
 
-use super::scene::{CREATURE, DT, Scene, at, lifted, slab};
+use super::scene::{self, CREATURE, DT, Scene, at, lifted, slab};
 use crate::debris::{Debris, DebrisConfig, DebrisError};
+use crate::testing::rest;
 
 /// Half the size of the creature, metres.
 const HALF: Vec3 = Vec3::new(4.0, 0.5, 4.0);
@@ -23,24 +25,23 @@ fn run(origin: DVec3, ticks: u32) -> Scene {
         scene.drop(shape, place);
     }
     for tick in 0..ticks {
-        let t = f64::from(tick) * DT;
-        let palette = lifted(3, |joint| 0.2 * libm::sin(3.0 * t + joint as f64));
-        let shake = DVec3::new(0.3 * libm::sin(9.0 * t), 0.0, 0.0);
-        scene.tick(&palette, at(origin + shake, DVec3::Y, 0.1 * t));
+        let (palette, root) = heaving(tick, origin);
+        scene.tick(&palette, root);
     }
     scene
 }
 
+/// The palette of a heaving back, and its root, which shakes and turns.
+fn heaving(tick: u32, origin: DVec3) -> (Palette, Similarity) {
+    let t = f64::from(tick) * DT;
+    let palette = lifted(3, |joint| 0.2 * libm::sin(3.0 * t + joint as f64));
+    let shake = DVec3::new(0.3 * libm::sin(9.0 * t), 0.0, 0.0);
+    (palette, at(origin + shake, DVec3::Y, 0.1 * t))
+}
+
 /// Bits of all debris.
 fn bits(scene: &Scene) -> Vec<u32> {
-    let bodies = scene.debris.bodies().map(|body| &scene.world.bodies[body]);
-    let numbers = bodies.flat_map(|body| {
-        let place = body.translation().to_array();
-        let turn = body.rotation().to_array();
-        let speed = body.linvel().to_array();
-        place.into_iter().chain(turn).chain(speed)
-    });
-    numbers.map(f32::to_bits).collect()
+    scene::bits(scene.debris.bodies().map(|body| &scene.world.bodies[body]))
 }
 
 #[test]
@@ -65,12 +66,8 @@ fn rocks_do_not_change_the_creature() {
     let with = run(DVec3::ZERO, 120);
     let mut without = slab(HALF, 0.6, 3);
     for tick in 0..120 {
-        let t = f64::from(tick) * DT;
-        let palette = lifted(3, |joint| 0.2 * libm::sin(3.0 * t + joint as f64));
-        let shake = DVec3::new(0.3 * libm::sin(9.0 * t), 0.0, 0.0);
-        without
-            .advance(&palette, at(shake, DVec3::Y, 0.1 * t))
-            .unwrap();
+        let (palette, root) = heaving(tick, DVec3::ZERO);
+        without.advance(&palette, root).unwrap();
     }
     let positions = |surface: &SkinnedSurface| {
         let mut all = Vec::new();
@@ -84,14 +81,11 @@ fn rocks_do_not_change_the_creature() {
 #[test]
 fn a_patch_collides_with_its_own_rock_only_and_contacts_name_its_triangles() {
     let mut scene = run(DVec3::ZERO, 90);
-    let palette = lifted(3, |_| 0.0);
-    scene.tick(&palette, Similarity::IDENTITY);
+    scene.tick(&lifted(3, |_| 0.0), Similarity::IDENTITY);
     let (mut with_skin, mut touching) = (0, 0);
     for pair in scene.world.narrow_phase.contact_pairs() {
-        for (skin, rock) in [
-            (pair.collider1, pair.collider2),
-            (pair.collider2, pair.collider1),
-        ] {
+        let [a, b] = [pair.collider1, pair.collider2];
+        for (skin, rock) in [(a, b), (b, a)] {
             let Some(owner) = scene.debris.owner_of(skin) else {
                 continue;
             };
@@ -102,17 +96,14 @@ fn a_patch_collides_with_its_own_rock_only_and_contacts_name_its_triangles() {
                     continue;
                 }
                 assert_eq!(body, Some(owner));
-                let subshape = if skin == pair.collider1 {
-                    manifold.subshape1
-                } else {
-                    manifold.subshape2
-                };
+                let subshapes = [manifold.subshape1, manifold.subshape2];
+                let subshape = subshapes[usize::from(skin == b)];
                 let (surface, triangle) = scene.debris.triangle_at(skin, subshape).unwrap();
                 assert_eq!(surface, CREATURE);
                 // The triangle is near the contact, within rapier's prediction and a tick of motion.
-                let corners = scene.surface.mesh().triangles()[triangle.index()];
-                let corners =
-                    corners.map(|v| scene.surface.in_model().previous_position(v).unwrap());
+                let (mesh, space) = (scene.surface.mesh(), scene.surface.in_model());
+                let corners = mesh.triangles()[triangle.index()];
+                let corners = corners.map(|v| space.previous_position(v).unwrap());
                 let place = scene.in_model(owner).as_vec3();
                 let triangle = rapier3d::parry::shape::Triangle::from(corners);
                 use rapier3d::parry::query::PointQuery;
@@ -128,21 +119,20 @@ fn a_patch_collides_with_its_own_rock_only_and_contacts_name_its_triangles() {
 #[test]
 fn patches_come_back_after_their_bodies_were_removed() {
     let mut scene = Scene::new(slab(HALF, 0.6, 1));
-    let palette = lifted(1, |_| 0.0);
     let (rock, _) = scene.drop(ColliderBuilder::ball(0.3), Vector::new(0.0, 0.85, 0.0));
     let asleep = (0..600).any(|_| {
-        scene.tick(&palette, Similarity::IDENTITY);
+        scene.tick(&rest(), Similarity::IDENTITY);
         scene.world.bodies[rock].is_sleeping()
     });
     assert!(asleep);
     let bodies = scene.world.bodies.iter();
-    let patches: Vec<_> = bodies.filter(|(_, body)| body.is_kinematic()).collect();
-    let patches: Vec<_> = patches.into_iter().map(|(handle, _)| handle).collect();
+    let patches = bodies.filter(|(_, body)| body.is_kinematic());
+    let patches: Vec<_> = patches.map(|(handle, _)| handle).collect();
     assert_eq!(patches.len(), 1);
     scene.world.remove_body(patches[0]);
     let place = scene.in_model(rock);
     for _ in 0..60 {
-        scene.tick(&palette, Similarity::IDENTITY);
+        scene.tick(&rest(), Similarity::IDENTITY);
     }
     let moved = (scene.in_model(rock) - place).length();
     assert!(moved < 0.005, "{moved}");
@@ -151,23 +141,22 @@ fn patches_come_back_after_their_bodies_were_removed() {
 #[test]
 fn patches_are_reused_when_bodies_come_and_go() {
     let mut scene = Scene::new(slab(HALF, 0.6, 1));
-    let palette = lifted(1, |_| 0.0);
     let place = Vector::new(0.0, 0.8, 0.0);
     let (first, _) = scene.drop(ColliderBuilder::ball(0.3), place);
-    let report = scene.tick(&palette, Similarity::IDENTITY);
+    let report = scene.tick(&rest(), Similarity::IDENTITY);
     assert_eq!(report.near, 1);
     let bodies = scene.world.bodies.len();
     scene.world.remove_body(first);
-    scene.tick(&palette, Similarity::IDENTITY);
+    scene.tick(&rest(), Similarity::IDENTITY);
     assert_eq!(scene.debris.bodies().len(), 0);
     // The next body takes over the patch of the removed one.
     let (second, _) = scene.drop(ColliderBuilder::ball(0.3), place);
-    let report = scene.tick(&palette, Similarity::IDENTITY);
+    let report = scene.tick(&rest(), Similarity::IDENTITY);
     assert_eq!((report.near, scene.world.bodies.len()), (1, bodies));
     assert!(scene.debris.remove(second, &mut scene.world.colliders));
     assert!(!scene.debris.remove(second, &mut scene.world.colliders));
     for _ in 0..60 {
-        scene.tick(&palette, Similarity::IDENTITY);
+        scene.tick(&rest(), Similarity::IDENTITY);
     }
     let fallen = scene.world.bodies[second].translation().y;
     assert!(fallen < -2.0, "no skin holds it any more: {fallen}");
@@ -176,19 +165,16 @@ fn patches_are_reused_when_bodies_come_and_go() {
 #[test]
 fn moving_skin_wakes_a_sleeping_rock() {
     let mut scene = Scene::new(slab(HALF, 0.6, 1));
-    let palette = lifted(1, |_| 0.0);
-    let (rock, _) = scene.drop(
-        ColliderBuilder::cuboid(0.3, 0.3, 0.3),
-        Vector::new(0.0, 0.8, 0.0),
-    );
+    let shape = ColliderBuilder::cuboid(0.3, 0.3, 0.3);
+    let (rock, _) = scene.drop(shape, Vector::new(0.0, 0.8, 0.0));
     for _ in 0..300 {
-        scene.tick(&palette, Similarity::IDENTITY);
+        scene.tick(&rest(), Similarity::IDENTITY);
     }
     assert!(scene.world.bodies[rock].is_sleeping());
     // The skin is so slow that rapier would let the rock sleep.
     for tick in 0..600 {
         let x = 0.02 * DT * f64::from(tick);
-        scene.tick(&palette, at(DVec3::X * x, DVec3::Y, 0.0));
+        scene.tick(&rest(), at(DVec3::X * x, DVec3::Y, 0.0));
     }
     let carried = scene.world.bodies[rock].translation().x;
     assert!((carried - 0.2).abs() < 0.02, "{carried}");
@@ -205,10 +191,8 @@ fn bad_input_is_an_error() {
     assert_eq!(result, Err(DebrisError::NotDynamic(fixed)));
     let result = debris.add(RigidBodyHandle::invalid(), bodies, colliders);
     assert!(matches!(result, Err(DebrisError::NotDynamic(_))));
-    assert_eq!(
-        debris.add(bare, bodies, colliders),
-        Err(DebrisError::NotSolid(bare))
-    );
+    let result = debris.add(bare, bodies, colliders);
+    assert_eq!(result, Err(DebrisError::NotSolid(bare)));
     for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let result = debris.before_step(&[(CREATURE, &scene.surface)], bodies, colliders, dt);
         assert!(matches!(result, Err(DebrisError::Tick(_))), "{dt}");

@@ -1,17 +1,14 @@
 //! The test for enclosed points, checked against the winding number.
 
-use std::sync::Arc;
-
 use clamber_surface::measure::winding_number;
-use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceTag, TriangleId, VertexId,
-};
+use clamber_surface::mesh::{Influence, SurfaceTag, TriangleId, VertexId};
 use clamber_surface::rig::JointId;
 use clamber_surface::surface::SkinnedSurface;
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
 use super::scene::slab;
 use crate::debris::enclosed::{is_enclosed, is_within};
+use crate::testing::rigid;
 
 /// Half the size of the slab, metres.
 const HALF: Vec3 = Vec3::new(3.0, 1.5, 2.0);
@@ -63,10 +60,7 @@ fn a_hole_that_covers_little_of_the_view_does_not_matter() {
     let mut hits = Vec::new();
     for point in points(2).take(3_000) {
         let space = surface.in_model();
-        let (enclosed, within) = (
-            is_enclosed(space, point, &mut hits),
-            is_within(space, point, &mut hits),
-        );
+        let [enclosed, within] = [is_enclosed, is_within].map(|asks| asks(space, point, &mut hits));
         let inside = point.abs().cmplt(HALF).all();
         let near = (point - Vec3::Y * HALF.y).length();
         assert!(inside || !enclosed && !within, "{point}");
@@ -101,9 +95,7 @@ fn disc(lift: impl Fn(f32) -> f32) -> SkinnedSurface {
             }
         }
     }
-    let source = MeshSource::rigid(&positions, &triangles);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
-    SkinnedSurface::new(Arc::new(mesh))
+    rigid(&positions, &triangles)
 }
 
 #[test]

@@ -1,12 +1,11 @@
-use std::sync::Arc;
-
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::mesh::{Influence, MeshSource};
 use clamber_surface::rig::JointId;
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 use rapier3d::prelude::*;
 
 use super::scene::{DT, Scene, at, lifted, slab};
+use crate::testing::surface_of;
 
 /// Half the size of a jaw, metres.
 const HALF: Vec3 = Vec3::new(3.0, 0.5, 3.0);
@@ -31,15 +30,13 @@ fn jaws() -> SkinnedSurface {
         weight: 1.0,
     };
     let influences: Vec<_> = (0..positions.len()).map(influence).collect();
-    let source = MeshSource {
+    surface_of(&MeshSource {
         positions: &positions,
         triangles: &triangles,
         influences: &influences,
         joint_count: 2,
         ..MeshSource::default()
-    };
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
-    SkinnedSurface::new(Arc::new(mesh))
+    })
 }
 
 /// Jaws close on a rock, down to a fifth of its width, and stay closed. The creature moves along meanwhile. Skin passes

@@ -1,18 +1,16 @@
 //! When a body is outside a creature again, checked against the winding number.
 
-use std::sync::Arc;
-
 use clamber_surface::geometry::Similarity;
 use clamber_surface::measure::winding_number;
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 use rapier3d::prelude::*;
 
-use super::scene::{at, lifted};
+use super::scene::at;
 use crate::debris::hull::Hull;
 use crate::debris::inner_capsule::InnerCapsule;
 use crate::debris::let_through::is_outside;
+use crate::testing::{rest, rigid};
 
 /// One creature on one joint, made of closed boxes, each given by its low and high corner. The boxes may overlap.
 fn boxes(corners: &[[Vec3; 2]]) -> SkinnedSurface {
@@ -20,13 +18,7 @@ fn boxes(corners: &[[Vec3; 2]]) -> SkinnedSurface {
     for [low, high] in corners {
         let first = positions.len() as u32;
         for corner in 0..8 {
-            let side = |axis: usize| {
-                if corner >> axis & 1 == 1 {
-                    high[axis]
-                } else {
-                    low[axis]
-                }
-            };
+            let side = |axis: usize| [low, high][corner >> axis & 1][axis];
             positions.push(Vec3::new(side(0), side(1), side(2)));
         }
         let faces = [
@@ -41,13 +33,7 @@ fn boxes(corners: &[[Vec3; 2]]) -> SkinnedSurface {
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
-    creature(&positions, &triangles)
-}
-
-fn creature(positions: &[Vec3], triangles: &[[u32; 3]]) -> SkinnedSurface {
-    let source = MeshSource::rigid(positions, triangles);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
-    SkinnedSurface::new(Arc::new(mesh))
+    rigid(&positions, &triangles)
 }
 
 fn ball(radius: f32) -> (InnerCapsule, Hull) {
@@ -68,7 +54,7 @@ fn a_body_is_outside_if_its_winding_number_is_0_and_it_touches_nothing() {
     ]);
     let origin = DVec3::new(3e4, 0.0, -1e4);
     let turned = at(origin + DVec3::Y, DVec3::Z, 0.4);
-    surface.place(&lifted(1, |_| 0.0), turned).unwrap();
+    surface.place(&rest(), turned).unwrap();
     let mut positions = Vec::new();
     surface.skin_all(&mut positions);
     let mut rng = fastrand::Rng::with_seed(4);
@@ -103,9 +89,8 @@ fn a_body_under_an_open_roof_is_outside() {
     let corners = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]];
     let positions = corners.map(|[x, z]| Vec3::new(x, 2.0, z));
     for [a, b, c, d] in [[0, 3, 2, 1], [0, 1, 2, 3]] {
-        let mut roof = creature(&positions, &[[a, b, c], [a, c, d]]);
-        roof.place(&lifted(1, |_| 0.0), Similarity::IDENTITY)
-            .unwrap();
+        let mut roof = rigid(&positions, &[[a, b, c], [a, c, d]]);
+        roof.place(&rest(), Similarity::IDENTITY).unwrap();
         for height in [0.0, 1.0, 3.0] {
             let pose = Pose::from_translation(Vec3::new(0.3, height, 0.2));
             let (core, hull) = &ball(0.3);
@@ -128,7 +113,7 @@ fn a_body_behind_a_large_open_sheet_is_outside_whatever_way_the_sheet_faces() {
         let turned = at(DVec3::ZERO, axis, 3.0 * coordinate());
         let place = |p: DVec3| turned.transform_point(p).as_vec3();
         let positions = corners.map(|[x, z]| place(DVec3::new(x, 0.0, z)));
-        let sheet = creature(&positions, &[[0, 2, 1], [0, 3, 2]]);
+        let sheet = rigid(&positions, &[[0, 2, 1], [0, 3, 2]]);
         for distance in [-5.0, -1.0, -0.4, 0.4, 1.0, 5.0] {
             let place = place(DVec3::new(0.3, distance, -0.2));
             let pose = Pose::from_translation(place);

@@ -2,6 +2,7 @@ use glam::{DVec3, Vec3};
 use rapier3d::prelude::*;
 
 use super::scene::{DT, Scene, at, lifted, slab};
+use crate::testing::rest;
 
 /// Half the size of the back, metres.
 const HALF: Vec3 = Vec3::new(6.0, 0.5, 3.0);
@@ -15,10 +16,8 @@ fn seconds(tick: u32) -> f64 {
 fn a_stone_laid_on_a_walking_back_rides_by_friction() {
     let joints = 5;
     let mut scene = Scene::new(slab(HALF, 0.6, joints));
-    let (stone, _) = scene.drop(
-        ColliderBuilder::cuboid(0.4, 0.3, 0.5),
-        Vector::new(1.0, 0.81, 0.3),
-    );
+    let shape = ColliderBuilder::cuboid(0.4, 0.3, 0.5);
+    let (stone, _) = scene.drop(shape, Vector::new(1.0, 0.81, 0.3));
     let mut laid = None;
     for tick in 0..480 {
         let t = seconds(tick);
@@ -51,16 +50,13 @@ fn a_stone_laid_on_a_walking_back_rides_by_friction() {
 fn a_stone_slides_off_when_the_back_tilts_and_not_before() {
     let mut scene = Scene::new(slab(HALF, 0.6, 1));
     scene.ground(-12.0);
-    let (stone, _) = scene.drop(
-        ColliderBuilder::cuboid(0.4, 0.3, 0.5),
-        Vector::new(1.0, 0.81, 0.0),
-    );
-    let palette = lifted(1, |_| 0.0);
+    let shape = ColliderBuilder::cuboid(0.4, 0.3, 0.5);
+    let (stone, _) = scene.drop(shape, Vector::new(1.0, 0.81, 0.0));
     let mut slid_at = None;
     for tick in 0..900 {
         // The back tilts by 8 degrees a second up to 60; friction of 0.8 holds up to 38.7.
         let angle = (seconds(tick) * 8.0).min(60.0).to_radians();
-        scene.tick(&palette, at(DVec3::ZERO, DVec3::Z, angle));
+        scene.tick(&rest(), at(DVec3::ZERO, DVec3::Z, angle));
         let off = (scene.in_model(stone) - DVec3::new(1.0, 0.8, 0.0)).length();
         if off > 0.1 && slid_at.is_none() {
             slid_at = Some(angle.to_degrees());

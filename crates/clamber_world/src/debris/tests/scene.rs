@@ -1,7 +1,5 @@
-use std::sync::Arc;
-
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::mesh::{Influence, MeshSource};
 use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
@@ -9,6 +7,7 @@ use rapier3d::prelude::*;
 
 use crate::ObstacleId;
 use crate::debris::{Debris, DebrisConfig, DebrisReport};
+use crate::testing::surface_of;
 
 /// Length of a tick, seconds.
 pub(super) const DT: f64 = 1.0 / 60.0;
@@ -64,15 +63,13 @@ pub(super) fn slab(half: Vec3, cell: f32, joints: usize) -> SkinnedSurface {
             weight,
         })
         .collect();
-    let source = MeshSource {
+    surface_of(&MeshSource {
         positions: &positions,
         triangles: &triangles,
         influences: &influences,
         joint_count: joints,
         ..MeshSource::default()
-    };
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
-    SkinnedSurface::new(Arc::new(mesh))
+    })
 }
 
 /// Every joint lifted by the height that `height` returns for its index.
@@ -90,6 +87,54 @@ pub(super) fn at(translation: DVec3, axis: DVec3, angle: f64) -> Similarity {
         scale: 1.0,
         translation,
     }
+}
+
+/// A tick of rapier's world with debris on surfaces.
+pub(super) fn step(
+    world: &mut PhysicsWorld,
+    debris: &mut Debris,
+    surfaces: &[(ObstacleId, &SkinnedSurface)],
+    dt: f64,
+) -> DebrisReport {
+    debris
+        .before_step(surfaces, &mut world.bodies, &mut world.colliders, dt)
+        .unwrap();
+    world.step_with_events(debris, &());
+    debris
+        .after_step(
+            surfaces,
+            &mut world.bodies,
+            &world.colliders,
+            &world.broad_phase,
+            &world.narrow_phase,
+            dt,
+        )
+        .unwrap()
+}
+
+/// Adds a rock to rapier's world and to debris.
+pub(super) fn add_rock(
+    world: &mut PhysicsWorld,
+    debris: &mut Debris,
+    body: RigidBodyBuilder,
+    collider: ColliderBuilder,
+) -> (RigidBodyHandle, ColliderHandle) {
+    let (body, collider) = world.insert(body, collider.friction(0.8).density(2500.0));
+    debris
+        .add(body, &mut world.bodies, &world.colliders)
+        .unwrap();
+    (body, collider)
+}
+
+/// Bits of the bodies' places and velocities.
+pub(super) fn bits<'a>(bodies: impl Iterator<Item = &'a RigidBody>) -> Vec<u32> {
+    let numbers = bodies.flat_map(|body| {
+        let place = body.translation().to_array().into_iter();
+        let turn = body.rotation().to_array();
+        let speeds = [body.linvel().to_array(), body.angvel().to_array()];
+        place.chain(turn).chain(speeds.into_iter().flatten())
+    });
+    numbers.map(f32::to_bits).collect()
 }
 
 /// A creature, debris, and rapier's world.
@@ -124,12 +169,7 @@ impl Scene {
         place: Vector,
     ) -> (RigidBodyHandle, ColliderHandle) {
         let body = RigidBodyBuilder::dynamic().translation(place);
-        let collider = collider.friction(0.8).density(2500.0);
-        let (body, collider) = self.world.insert(body, collider);
-        self.debris
-            .add(body, &mut self.world.bodies, &self.world.colliders)
-            .unwrap();
-        (body, collider)
+        add_rock(&mut self.world, &mut self.debris, body, collider)
     }
 
     pub(super) fn tick(&mut self, palette: &Palette, world_from_model: Similarity) -> DebrisReport {
@@ -139,22 +179,8 @@ impl Scene {
 
     /// A tick of the creature as it is posed.
     pub(super) fn step(&mut self) -> DebrisReport {
-        let (bodies, colliders) = (&mut self.world.bodies, &mut self.world.colliders);
-        self.debris
-            .before_step(&[(CREATURE, &self.surface)], bodies, colliders, DT)
-            .unwrap();
-        self.world.step_with_events(&self.debris, &());
-        let report = self
-            .debris
-            .after_step(
-                &[(CREATURE, &self.surface)],
-                &mut self.world.bodies,
-                &self.world.colliders,
-                &self.world.broad_phase,
-                &self.world.narrow_phase,
-                DT,
-            )
-            .unwrap();
+        let surfaces = [(CREATURE, &self.surface)];
+        let report = step(&mut self.world, &mut self.debris, &surfaces, DT);
         self.put_back += report.put_back;
         self.caught += report.caught;
         report

@@ -1,14 +1,14 @@
 //! Several creatures: the state of debris belongs to an obstacle's id, not to an index in the list.
 
-use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::rig::Palette;
+use clamber_surface::geometry::Similarity;
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 use rapier3d::prelude::*;
 
-use super::scene::{DT, lifted, slab};
+use super::scene::{DT, add_rock, bits, lifted, slab, step};
 use crate::ObstacleId;
 use crate::debris::{Debris, DebrisConfig, DebrisError, DebrisReport};
+use crate::testing::rest;
 
 /// Radius of the rock, metres.
 const RADIUS: f64 = 0.3;
@@ -23,16 +23,10 @@ struct Rock {
 impl Rock {
     fn new(place: Vector) -> Self {
         let mut world = PhysicsWorld::default();
-        let (body, _) = world.insert(
-            RigidBodyBuilder::dynamic().translation(place),
-            ColliderBuilder::ball(RADIUS as f32)
-                .density(2500.0)
-                .friction(0.8),
-        );
         let mut debris = Debris::new(DebrisConfig::default());
-        debris
-            .add(body, &mut world.bodies, &world.colliders)
-            .unwrap();
+        let body = RigidBodyBuilder::dynamic().translation(place);
+        let ball = ColliderBuilder::ball(RADIUS as f32);
+        let (body, _) = add_rock(&mut world, &mut debris, body, ball);
         Self {
             world,
             debris,
@@ -41,21 +35,7 @@ impl Rock {
     }
 
     fn tick(&mut self, surfaces: &[(ObstacleId, &SkinnedSurface)]) -> DebrisReport {
-        let world = &mut self.world;
-        self.debris
-            .before_step(surfaces, &mut world.bodies, &mut world.colliders, DT)
-            .unwrap();
-        world.step_with_events(&self.debris, &());
-        self.debris
-            .after_step(
-                surfaces,
-                &mut world.bodies,
-                &world.colliders,
-                &world.broad_phase,
-                &world.narrow_phase,
-                DT,
-            )
-            .unwrap()
+        step(&mut self.world, &mut self.debris, surfaces, DT)
     }
 
     fn place(&self) -> DVec3 {
@@ -63,14 +43,7 @@ impl Rock {
     }
 
     fn bits(&self) -> Vec<u32> {
-        let body = &self.world.bodies[self.body];
-        let numbers = body.translation().to_array().into_iter();
-        let numbers = numbers.chain(body.rotation().to_array());
-        let numbers = numbers.chain(body.linvel().to_array());
-        numbers
-            .chain(body.angvel().to_array())
-            .map(f32::to_bits)
-            .collect()
+        bits(std::iter::once(&self.world.bodies[self.body]))
     }
 }
 
@@ -78,20 +51,14 @@ fn stone(half: Vec3) -> SkinnedSurface {
     slab(half, 0.6, 1)
 }
 
-fn rest() -> Palette {
-    lifted(1, |_| 0.0)
-}
-
 fn moved(surface: &mut SkinnedSurface, place: DVec3) {
-    surface
-        .advance(&rest(), Similarity::from_translation(place))
-        .unwrap();
+    let root = Similarity::from_translation(place);
+    surface.advance(&rest(), root).unwrap();
 }
 
 fn placed(surface: &mut SkinnedSurface, place: DVec3) {
-    surface
-        .place(&rest(), Similarity::from_translation(place))
-        .unwrap();
+    let root = Similarity::from_translation(place);
+    surface.place(&rest(), root).unwrap();
 }
 
 /// Two hands clap at a speed on a rock in mid-air, and leave it less room than it needs. The hand with index `first` is
@@ -165,10 +132,8 @@ fn a_creature_that_leaves_the_list_does_not_change_the_state_against_the_others(
                 rock.tick(&[(of_arm, &arm)]);
                 let (face, place) = (arm_at(tick).x + 0.3, rock.place());
                 let case = format!("{speed} m/s, {ids:?}, tick {}", tick - GONE);
-                assert!(
-                    place.x > face - 0.02,
-                    "{case}: rock at {place:.2}, arm's face at {face:.2}"
-                );
+                let told = format!("{case}: rock at {place:.2}, arm's face at {face:.2}");
+                assert!(place.x > face - 0.02, "{told}");
                 assert!(!rock.debris.is_let_through(rock.body), "{case}");
             }
         }
@@ -191,16 +156,13 @@ fn a_creature_that_was_placed_elsewhere_holds_rocks_there() {
     for way in [Way::Palette, Way::Root, Way::Successor, Way::Other] {
         // After 400 ticks the rock is asleep.
         for calm in [20, 400] {
-            for up in [-0.1, -0.03, -0.002, 0.005, 0.03, 0.1] {
+            for up in [-0.1f32, -0.03, -0.002, 0.005, 0.03, 0.1] {
                 let mut one = stone(Vec3::new(4.0, 1.0, 4.0));
                 let mut two = SkinnedSurface::new(one.mesh().clone());
-                let mut matrix = Affine::IDENTITY;
-                matrix.rows[1][3] = up;
-                let shifted = Palette::from_matrices([matrix]);
-                let lifted = Similarity::from_translation(DVec3::Y * f64::from(up));
+                let root = Similarity::from_translation(DVec3::Y * f64::from(up));
                 let (palette, root) = match way {
-                    Way::Root => (rest(), lifted),
-                    _ => (shifted, Similarity::IDENTITY),
+                    Way::Root => (rest(), root),
+                    _ => (lifted(1, |_| f64::from(up)), Similarity::IDENTITY),
                 };
                 two.place(&palette, root).unwrap();
                 let mut rock = Rock::new(Vector::new(0.2, 1.31, 0.3));
@@ -225,10 +187,8 @@ fn a_creature_that_was_placed_elsewhere_holds_rocks_there() {
                     rock.tick(&[now]);
                 }
                 let gap = rock.place().y - RADIUS - 1.0 - f64::from(up);
-                assert!(
-                    gap.abs() < 2e-3,
-                    "{way:?}, {calm} calm ticks, {up} m up: {gap} m over the skin"
-                );
+                let case = format!("{way:?}, {calm} calm ticks, {up} m up");
+                assert!(gap.abs() < 2e-3, "{case}: {gap} m over the skin");
             }
         }
     }
@@ -273,10 +233,8 @@ fn one_id_for_two_surfaces_is_refused_and_changes_nothing() {
         .debris
         .before_step(&twice, &mut world.bodies, &mut world.colliders, DT);
     assert_eq!(found.as_ref(), Err(&wanted));
-    assert_eq!(
-        wanted.to_string(),
-        "obstacle 3 is twice in the list of surfaces"
-    );
+    let text = "obstacle 3 is twice in the list of surfaces";
+    assert_eq!(wanted.to_string(), text);
     let found = rock.debris.after_step(
         &twice,
         &mut world.bodies,

@@ -5,11 +5,12 @@ use parry3d::math::Pose;
 use parry3d::shape::{Ball, Capsule, Compound, Cuboid, SharedShape};
 
 use super::*;
+use crate::testing::point;
 
 /// A moving climber of a size, for a physics engine.
 fn climber(rng: &mut Rng, size: f64) -> ProxyBody {
-    let axis = [DVec3::ZERO, DVec3::Y, any(rng, 1.0)][rng.usize(0..3)] * size;
-    let first = any(rng, size);
+    let axis = [DVec3::ZERO, DVec3::Y, point(rng, 1.0)][rng.usize(0..3)] * size;
+    let first = point(rng, size);
     ProxyBody {
         capsule: WorldCapsule {
             ends: [first, first + axis],
@@ -18,17 +19,13 @@ fn climber(rng: &mut Rng, size: f64) -> ProxyBody {
         margin: 0.01 * size,
         mass: 80.0,
         velocity: DVec3::ZERO,
-        drift: any(rng, 5.0 * size),
+        drift: point(rng, 5.0 * size),
         frame_velocity: DVec3::ZERO,
         up: DVec3::Y,
         support_normal: None,
         gentle: 0.0,
         support: None,
     }
-}
-
-fn any(rng: &mut Rng, size: f64) -> DVec3 {
-    DVec3::from_array(std::array::from_fn(|_| size * (2.0 * rng.f64() - 1.0)))
 }
 
 /// A rotation by a vector: the axis times radians.
@@ -42,7 +39,15 @@ fn turned(by: DVec3) -> DQuat {
 }
 
 fn turn(rng: &mut Rng) -> DQuat {
-    turned(any(rng, 2.0))
+    turned(point(rng, 2.0))
+}
+
+/// A pose within reach of a climber of a size.
+fn pose(rng: &mut Rng, size: f64) -> RigidPose {
+    RigidPose {
+        rotation: turn(rng),
+        translation: point(rng, 4.0 * size),
+    }
 }
 
 /// Shapes in the middle of their body or beside it.
@@ -60,14 +65,12 @@ fn shapes(rng: &mut Rng, size: f32) -> Vec<(SharedShape, RigidPose)> {
         2 => SharedShape::new(Capsule::new(Vec3::X * side(rng), Vec3::Y, side(rng))),
         _ => SharedShape::new(Compound::new(both)),
     };
-    let aside = any(rng, f64::from(size)) * f64::from(rng.u8(0..2));
-    vec![(
-        shape,
-        RigidPose {
-            rotation: turn(rng),
-            translation: aside,
-        },
-    )]
+    let aside = point(rng, f64::from(size)) * f64::from(rng.u8(0..2));
+    let pose = RigidPose {
+        rotation: turn(rng),
+        translation: aside,
+    };
+    vec![(shape, pose)]
 }
 
 fn solids(
@@ -84,11 +87,7 @@ fn what_is_passed_over_as_far_away_does_not_touch() {
         let size = [0.02, 1.0, 100.0][round % 3];
         let climber = climber(&mut rng, size);
         let shapes = shapes(&mut rng, size as f32);
-        let mut pose = || RigidPose {
-            rotation: turn(&mut rng),
-            translation: any(&mut rng, 4.0 * size),
-        };
-        let (from, to) = (pose(), pose());
+        let [from, to] = [(); 2].map(|()| pose(&mut rng, size));
         let path = [from.translation, to.translation - climber.drift * 0.1];
         let capsule = &climber.capsule;
         let is_far = solids(&shapes).all(|solid| is_far(solid, path, capsule));
@@ -114,12 +113,8 @@ fn a_stopped_body_is_in_the_layer_around_the_climber_and_not_in_it() {
             ..climber
         };
         let shapes = shapes(&mut rng, size as f32);
-        let mut pose = || RigidPose {
-            rotation: turn(&mut rng),
-            translation: any(&mut rng, 4.0 * size),
-        };
-        let (from, mut to) = (pose(), pose());
-        let turns = any(&mut rng, 1.0).normalize() * rng.f64();
+        let [from, mut to] = [(); 2].map(|()| pose(&mut rng, size));
+        let turns = point(&mut rng, 1.0).normalize() * rng.f64();
         to.rotation = turned(turns) * from.rotation;
         if deepest(&from, solids(&shapes), &climber.capsule).is_some() {
             continue;

@@ -34,6 +34,17 @@ fn direction(rng: &mut fastrand::Rng) -> DVec3 {
     DVec3::new(rng.f64() - 0.5, rng.f64() - 0.5, rng.f64() - 0.5).normalize()
 }
 
+/// The speed that a contact's point gains along a direction, for each N s.
+fn response(world: &PhysicsWorld, contact: &crate::Contact, along: DVec3) -> f64 {
+    let terrain = RapierTerrain::of_world(world, &NO_POSES);
+    terrain.push_response(&contact.material, along)
+}
+
+fn push(world: &mut PhysicsWorld, contact: &crate::Contact, impulse: DVec3) {
+    let (bodies, colliders) = (&mut world.bodies, &world.colliders);
+    apply_push(bodies, colliders, &contact.material, impulse);
+}
+
 /// The speed along an impulse that the point gains in the next step, for each N s.
 fn response_by_step(
     world: &mut PhysicsWorld,
@@ -43,12 +54,7 @@ fn response_by_step(
 ) -> f64 {
     let point = contact.point.as_vec3();
     let local = world.bodies[body].position().inverse_transform_point(point);
-    apply_push(
-        &mut world.bodies,
-        &world.colliders,
-        &contact.material,
-        impulse,
-    );
+    push(world, contact, impulse);
     world.step();
     let dt = f64::from(world.integration_parameters.dt);
     let now = world.bodies[body].position().transform_point(local);
@@ -62,8 +68,7 @@ fn responses_agree_with_rapiers_own_step() {
         let (mut world, body) = free_box(&mut rng, RigidBodyBuilder::dynamic());
         let contact = touched(&world, &mut rng);
         let along = direction(&mut rng);
-        let terrain = RapierTerrain::of_world(&world, &NO_POSES);
-        let expected = terrain.push_response(&contact.material, along);
+        let expected = response(&world, &contact, along);
         // Makes the point move by about a centimetre: far more than rounding, and with hardly any rotation.
         let impulse = along * (0.6 / expected);
         let seen = response_by_step(&mut world, body, &contact, impulse);
@@ -86,15 +91,9 @@ fn impulses_change_velocities_by_exactly_the_response() {
         let (mut world, handle) = free_box(&mut rng, body);
         let contact = touched(&world, &mut rng);
         let along = direction(&mut rng);
-        let terrain = RapierTerrain::of_world(&world, &NO_POSES);
-        let expected = terrain.push_response(&contact.material, along);
+        let expected = response(&world, &contact, along);
         let impulse = along * 3.0;
-        apply_push(
-            &mut world.bodies,
-            &world.colliders,
-            &contact.material,
-            impulse,
-        );
+        push(&mut world, &contact, impulse);
         let velocity = world.bodies[handle].velocity_at_point(contact.point.as_vec3());
         let seen = velocity.as_dvec3().dot(along) / 3.0;
         assert!(
@@ -117,39 +116,25 @@ fn a_body_that_cannot_be_pushed_responds_with_zero_and_stays_unchanged() {
     for body in kinds {
         let (mut world, handle) = free_box(&mut rng, body);
         let contact = touched(&world, &mut rng);
-        let terrain = RapierTerrain::of_world(&world, &NO_POSES);
-        assert_eq!(terrain.push_response(&contact.material, DVec3::X), 0.0);
+        assert_eq!(response(&world, &contact, DVec3::X), 0.0);
         let velocities = |world: &PhysicsWorld| {
             let body = &world.bodies[handle];
             (body.linvel(), body.angvel())
         };
         let before = velocities(&world);
-        let impulse = DVec3::splat(100.0);
-        apply_push(
-            &mut world.bodies,
-            &world.colliders,
-            &contact.material,
-            impulse,
-        );
+        push(&mut world, &contact, DVec3::splat(100.0));
         assert_eq!(velocities(&world), before);
     }
     let (mut world, handle) = free_box(&mut rng, RigidBodyBuilder::dynamic());
     let contact = touched(&world, &mut rng);
     for bad in [DVec3::NAN, DVec3::INFINITY, DVec3::splat(1e200)] {
-        let terrain = RapierTerrain::of_world(&world, &NO_POSES);
-        assert_eq!(terrain.push_response(&contact.material, bad), 0.0, "{bad}");
-        apply_push(&mut world.bodies, &world.colliders, &contact.material, bad);
+        assert_eq!(response(&world, &contact, bad), 0.0, "{bad}");
+        push(&mut world, &contact, bad);
         assert_eq!(world.bodies[handle].linvel(), Vector::ZERO, "{bad}");
     }
     world.remove_body(handle);
-    let terrain = RapierTerrain::of_world(&world, &NO_POSES);
-    assert_eq!(terrain.push_response(&contact.material, DVec3::X), 0.0);
-    apply_push(
-        &mut world.bodies,
-        &world.colliders,
-        &contact.material,
-        DVec3::X,
-    );
+    assert_eq!(response(&world, &contact, DVec3::X), 0.0);
+    push(&mut world, &contact, DVec3::X);
 }
 
 #[test]
@@ -158,12 +143,7 @@ fn a_push_wakes_a_sleeping_body() {
     let (mut world, handle) = free_box(&mut rng, RigidBodyBuilder::dynamic().sleeping(true));
     let contact = touched(&world, &mut rng);
     assert!(world.bodies[handle].is_sleeping());
-    apply_push(
-        &mut world.bodies,
-        &world.colliders,
-        &contact.material,
-        DVec3::X * 50.0,
-    );
+    push(&mut world, &contact, DVec3::X * 50.0);
     assert!(!world.bodies[handle].is_sleeping());
     assert!(world.bodies[handle].linvel().x > 0.0);
 }

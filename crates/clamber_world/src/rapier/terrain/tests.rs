@@ -9,6 +9,7 @@ use rapier3d::prelude::*;
 
 use super::*;
 use crate::debris::PatchShape;
+use crate::testing::{assert_near, cast, point, sweep};
 
 static NO_POSES: BodyPoses = BodyPoses::new();
 
@@ -50,28 +51,19 @@ fn height_fields_and_meshes_answer_per_triangle() {
         let p = DVec3::new(0.3, 1.5, 0.4);
         let closest = terrain.closest_point(p, 2.0).unwrap();
         assert!((closest.distance - 0.5).abs() < 1e-6, "{name}: {closest:?}");
-        assert!(
-            (closest.normal - DVec3::Y).length() < 1e-6,
-            "{name}: {closest:?}"
-        );
-        assert!(
-            (closest.point - DVec3::new(0.3, 1.0, 0.4)).length() < 1e-6,
-            "{name}"
-        );
+        assert_near(closest.normal, DVec3::Y, 1e-6, name);
+        assert_near(closest.point, DVec3::new(0.3, 1.0, 0.4), 1e-6, name);
         assert_eq!(terrain.closest_point(p, 0.4), None, "{name}");
-        assert!(
-            terrain.closest_point(p * 50.0, f64::INFINITY).is_some(),
-            "{name}"
-        );
+        let far = terrain.closest_point(p * 50.0, f64::INFINITY);
+        assert!(far.is_some(), "{name}");
         let mut contacts = Vec::new();
         terrain.overlap_sphere(p, 0.7, &mut contacts);
         assert!(contacts.len() >= 2, "{name}: {contacts:?}");
         let few = contacts.len();
         terrain.overlap_sphere(p, f64::INFINITY, &mut contacts);
         assert!(contacts.len() >= 2 * few, "{name}: all of them, appended");
-        let hit = terrain
-            .cast_ray(p, DVec3::new(0.0, -3.0, 0.0), 2.0)
-            .unwrap();
+        let down = DVec3::new(0.0, -3.0, 0.0);
+        let hit = terrain.cast_ray(p, down, 2.0).unwrap();
         assert!((hit.distance - 0.5).abs() < 1e-6, "{name}: {hit:?}");
         let at_its_end = terrain.cast_ray(p, DVec3::NEG_Y, hit.distance);
         assert_eq!(at_its_end, Some(hit), "{name}");
@@ -84,20 +76,14 @@ fn height_fields_and_meshes_answer_per_triangle() {
 fn convex_shapes_are_solid() {
     let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));
     let terrain = RapierTerrain::of_world(&world, &NO_POSES);
-    let inside = DVec3::new(0.8, 0.3, 0.0);
-    let contact = terrain.closest_point(inside, 1.0).unwrap();
-    assert!((contact.distance + 0.2).abs() < 1e-6, "{contact:?}");
-    assert!(
-        (contact.separation_normal(inside) - DVec3::X).length() < 1e-6,
-        "{contact:?}"
-    );
-    let outside = DVec3::new(0.0, 3.0, 0.0);
-    let contact = terrain.closest_point(outside, 10.0).unwrap();
-    assert!((contact.distance - 2.0).abs() < 1e-6, "{contact:?}");
-    assert!(
-        (contact.separation_normal(outside) - DVec3::Y).length() < 1e-6,
-        "{contact:?}"
-    );
+    for (place, reach, distance, normal) in [
+        (DVec3::new(0.8, 0.3, 0.0), 1.0, -0.2, DVec3::X),
+        (DVec3::Y * 3.0, 10.0, 2.0, DVec3::Y),
+    ] {
+        let contact = terrain.closest_point(place, reach).unwrap();
+        assert!((contact.distance - distance).abs() < 1e-6, "{contact:?}");
+        assert_near(contact.separation_normal(place), normal, 1e-6, place);
+    }
 }
 
 #[test]
@@ -114,11 +100,8 @@ fn a_shape_that_is_its_own_part_has_no_parts() {
     assert_eq!(contacts, []);
     assert_eq!(terrain.closest_point(DVec3::ZERO, 2.0), None);
     // Rays are cast by the shape itself.
-    assert!(
-        terrain
-            .cast_ray(DVec3::Y * 2.0, DVec3::NEG_Y, 4.0)
-            .is_some()
-    );
+    let hit = terrain.cast_ray(DVec3::Y * 2.0, DVec3::NEG_Y, 4.0);
+    assert!(hit.is_some());
 }
 
 /// Bounds of [`SelfPart`].
@@ -210,13 +193,11 @@ impl PointQuery for SelfPart {
 
 #[test]
 fn compounds_answer_per_part() {
-    let part = |x: f32| {
-        (
-            Pose::from_translation(Vector::X * x),
-            SharedShape::ball(0.5),
-        )
-    };
-    let world = world_of(ColliderBuilder::compound(vec![part(-1.0), part(1.0)]));
+    let parts = [-1.0f32, 1.0].map(|x| {
+        let place = Pose::from_translation(Vector::X * x);
+        (place, SharedShape::ball(0.5))
+    });
+    let world = world_of(ColliderBuilder::compound(parts.to_vec()));
     let terrain = RapierTerrain::of_world(&world, &NO_POSES);
     let mut contacts = Vec::new();
     terrain.overlap_sphere(DVec3::Y * 0.2, 1.0, &mut contacts);
@@ -259,27 +240,14 @@ fn points_of_a_turning_body_move_on_arcs() {
     let motion = terrain.motion(&material, dt).unwrap();
     let angle = 6.0 * dt;
     let from_axis = DVec3::new(2.0, 0.0, 0.0);
-    let turned = DVec3::new(2.0 * libm_cos(angle), 0.0, -2.0 * libm_sin(angle));
+    let turned = DVec3::new(2.0 * libm::cos(angle), 0.0, -2.0 * libm::sin(angle));
     let arc = DVec3::new(3.0, 0.7, 0.0) + turned - from_axis;
     // Rapier integrates the body's rotation in f32.
     assert!((motion.position - arc).length() < 5e-5, "{motion:?} {arc}");
-    let chord = (turned - from_axis) / dt;
-    assert!(
-        (motion.velocity - chord).length() < 5e-3,
-        "{motion:?} {chord}"
-    );
+    assert_near(motion.velocity, (turned - from_axis) / dt, 5e-3, "velocity");
     let turned = motion.turn * DVec3::X;
-    let expected = DVec3::new(libm_cos(angle), 0.0, -libm_sin(angle));
+    let expected = DVec3::new(libm::cos(angle), 0.0, -libm::sin(angle));
     assert!((turned - expected).length() < 1e-5, "{turned}");
-}
-
-/// Power series, precise enough for a tenth of a radian.
-fn libm_sin(x: f64) -> f64 {
-    x - x * x * x / 6.0 + x * x * x * x * x / 120.0
-}
-
-fn libm_cos(x: f64) -> f64 {
-    1.0 - x * x / 2.0 + x * x * x * x / 24.0 - x * x * x * x * x * x / 720.0
 }
 
 #[test]
@@ -314,12 +282,8 @@ fn seen(terrain: &RapierTerrain<'_>, material: &MaterialPoint) -> [bool; 6] {
         terrain.cast_ray(DVec3::Y * 3.0, way, 9.0).is_some(),
         terrain.closest_point(DVec3::Y * 1.2, 9.0).is_some(),
         !contacts.is_empty(),
-        terrain
-            .cast_capsule(&capsule, [way; 2], TargetMotion::Still)
-            .is_some(),
-        terrain
-            .cast_capsule(&capsule, [way; 2], TargetMotion::Moving)
-            .is_some(),
+        cast(terrain, &capsule, way).is_some(),
+        sweep(terrain, &capsule, way).is_some(),
         terrain.motion(material, 0.1).is_some(),
     ]
 }
@@ -373,11 +337,8 @@ fn no_query_sees_disabled_colliders_sensors_or_filtered_ones() {
                 show(&mut world.colliders[handle]);
                 let poses = tick(&mut world, 0.15);
                 let terrain = RapierTerrain::of_world(&world, &poses);
-                assert_eq!(
-                    seen(&terrain, &hit.material),
-                    [true; 6],
-                    "shown again, {told}"
-                );
+                let shown = seen(&terrain, &hit.material);
+                assert_eq!(shown, [true; 6], "shown again, {told}");
             }
         }
     }
@@ -427,7 +388,6 @@ mod capsules;
 fn among_many_moving_bodies_the_first_contact_is_that_with_one_of_them_alone() {
     let mut rng = fastrand::Rng::with_seed(31);
     let ball = WorldCapsule::ball(DVec3::ZERO, 0.3);
-    let way = [DVec3::X * 12.0; 2];
     let mut met = 0;
     for round in 0..60 {
         let count = [1, FEW, FEW + 1, 40][round % 4];
@@ -452,8 +412,7 @@ fn among_many_moving_bodies_the_first_contact_is_that_with_one_of_them_alone() {
             world.step();
             // No body is in the way at the end of the tick.
             let terrain = RapierTerrain::of_world(&world, &before);
-            let hit = terrain.cast_capsule(&ball, way, TargetMotion::Moving);
-            hit.map(|hit| hit.fraction)
+            sweep(&terrain, &ball, DVec3::X * 12.0).map(|hit| hit.fraction)
         };
         let alone = starts.iter().filter_map(|start| first(&[*start]));
         let alone = alone.reduce(f64::min);

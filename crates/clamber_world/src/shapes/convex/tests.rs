@@ -4,9 +4,10 @@ mod ways_out;
 
 use clamber_surface::geometry::MovingCapsule;
 use glam::{DQuat, DVec3, Vec3};
-use parry3d::shape::{ConvexPolyhedron, Cuboid, RoundShape, SharedShape, Triangle};
+use parry3d::shape::{ConvexPolyhedron, Cuboid, SharedShape};
 
 use super::{Convex, MovingConvex};
+use crate::testing::point;
 
 /// A shape, and a second way to compute how far a point is from its core; 0 inside.
 struct Case {
@@ -78,19 +79,19 @@ fn faces(points: &[Vec3]) -> Vec<[Vec3; 3]> {
     faces
 }
 
+fn to_triangle(corners: [Vec3; 3], p: DVec3) -> f64 {
+    let still = MovingCapsule::ball(p, DVec3::ZERO, 0.0);
+    let found = still.nearest_of_triangle(corners.map(|corner| corner.as_dvec3()));
+    found.unwrap().distance
+}
+
 fn to_hull(faces: &[[Vec3; 3]], p: DVec3) -> f64 {
     let mut nearest = f64::INFINITY;
     let mut inside = true;
     for &corners in faces {
         let [a, b, c] = corners.map(|corner| corner.as_dvec3());
         inside &= (b - a).cross(c - a).dot(p - a) <= 0.0;
-        let still = MovingCapsule::ball(p, DVec3::ZERO, 0.0);
-        nearest = nearest.min(
-            still
-                .nearest_of_triangle(corners.map(|p| p.as_dvec3()))
-                .unwrap()
-                .distance,
-        );
+        nearest = nearest.min(to_triangle(corners, p));
     }
     if inside { 0.0 } else { nearest }
 }
@@ -119,7 +120,7 @@ fn cases(rng: &mut fastrand::Rng) -> Vec<Case> {
     let [a, b, c] = corners;
     let hull = hull(rng);
     let faces = faces(hull.points());
-    let half_extents = half.as_vec3();
+    let Vec3 { x, y, z } = half.as_vec3();
     // The values that the shape stores, rounded to f32.
     let exact = |p: DVec3| p.as_vec3().as_dvec3();
     let (cylinder, cone) = (cylinder.map(exact), cone.map(exact));
@@ -137,17 +138,10 @@ fn cases(rng: &mut fastrand::Rng) -> Vec<Case> {
             SharedShape::capsule(ends[0], ends[1], 0.3),
             Box::new(move |p| to_segment(ends.map(|end| end.as_dvec3()), p)),
         ),
-        case(
-            "cuboid",
-            SharedShape::new(Cuboid::new(half_extents)),
-            Box::new(to_box),
-        ),
+        case("cuboid", SharedShape::cuboid(x, y, z), Box::new(to_box)),
         case(
             "round cuboid",
-            SharedShape::new(RoundShape {
-                inner_shape: Cuboid::new(half_extents),
-                border_radius: 0.1,
-            }),
+            SharedShape::round_cuboid(x, y, z, 0.1),
             Box::new(to_box),
         ),
         case(
@@ -162,17 +156,8 @@ fn cases(rng: &mut fastrand::Rng) -> Vec<Case> {
         ),
         case(
             "round triangle",
-            SharedShape::new(RoundShape {
-                inner_shape: Triangle::new(a, b, c),
-                border_radius: 0.05,
-            }),
-            Box::new(move |p| {
-                let still = MovingCapsule::ball(p, DVec3::ZERO, 0.0);
-                still
-                    .nearest_of_triangle(corners.map(|p| p.as_dvec3()))
-                    .unwrap()
-                    .distance
-            }),
+            SharedShape::round_triangle(a, b, c, 0.05),
+            Box::new(move |p| to_triangle(corners, p)),
         ),
         case(
             "hull",
@@ -180,10 +165,6 @@ fn cases(rng: &mut fastrand::Rng) -> Vec<Case> {
             Box::new(move |p| to_hull(&faces, p)),
         ),
     ]
-}
-
-fn point(rng: &mut fastrand::Rng, size: f64) -> DVec3 {
-    DVec3::new(rng.f64() - 0.5, rng.f64() - 0.5, rng.f64() - 0.5) * 2.0 * size
 }
 
 fn direction(rng: &mut fastrand::Rng) -> DVec3 {

@@ -1,20 +1,17 @@
-use clamber_climber::{Climber, ClimberInput, StepReport};
+use clamber_climber::{Climber, StepReport};
 use clamber_fight::Arena;
 use clamber_navigation::{Bot, Goal};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::Palette;
-use clamber_surface::surface::{Diagnostics, SkinnedSurface};
+use clamber_surface::surface::SkinnedSurface;
 use clamber_world::rapier3d::dynamics::RigidBodyHandle;
 use clamber_world::rapier3d::geometry::{Collider, ColliderHandle};
-use clamber_world::rapier3d::pipeline::PhysicsWorld;
 use clamber_world::{Obstacle, ObstacleId, RapierTerrain};
 
 use super::super::bot::giant;
 use super::{Battle, CREATURE, Part, TERRAIN, is_fixed};
-use crate::Creature;
-use crate::battle::{Counts, Rockfall};
 
-impl<'a> Battle<'a> {
+impl Battle<'_> {
     /// Calls `touch` with the climber's obstacles as they are now: terrain and creature.
     pub fn touched<T>(&self, touch: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T) -> T {
         let bodies = &self.world.bodies;
@@ -28,24 +25,9 @@ impl<'a> Battle<'a> {
         self.counts.tick
     }
 
-    /// What happened so far, in numbers.
-    pub fn counts(&self) -> &Counts {
-        &self.counts
-    }
-
     /// A 64-bit hash of the climber's states, the rocks' poses and all that changes in a fight, in all ticks.
     pub fn hash(&self) -> u64 {
         self.hash.value()
-    }
-
-    /// Times of the ticks, microseconds: of pose, script and climber, and of the rocks with physics.
-    pub fn times(&self) -> &[[f64; 2]] {
-        &self.times
-    }
-
-    /// What the last tick skinned for the climber, without the rocks' queries.
-    pub fn skinned(&self) -> &Diagnostics {
-        &self.skinned
     }
 
     /// The climber.
@@ -62,21 +44,6 @@ impl<'a> Battle<'a> {
             Part::Fights { arena, .. } => arena.fighters()[0].report(),
             Part::Rides(ride) => &ride.report,
         }
-    }
-
-    /// The climber's input in the last tick.
-    pub fn input(&self) -> &ClimberInput {
-        &self.input
-    }
-
-    /// The creature as it was loaded.
-    pub fn creature(&self) -> &'a Creature {
-        self.creature
-    }
-
-    /// Height that the creature is scaled to, metres.
-    pub fn height(&self) -> f64 {
-        self.height
     }
 
     /// The creature's skin, as posed by the last tick.
@@ -124,16 +91,6 @@ impl<'a> Battle<'a> {
         }
     }
 
-    /// The physics world: the valley, the outcrop in a climb, and the rocks.
-    pub fn world(&self) -> &PhysicsWorld {
-        &self.world
-    }
-
-    /// The physics world, for tests that move rocks.
-    pub fn world_mut(&mut self) -> &mut PhysicsWorld {
-        &mut self.world
-    }
-
     /// The place of a body of the physics world.
     pub fn placed(&self, body: RigidBodyHandle) -> Similarity {
         let body = &self.world.bodies[body];
@@ -142,16 +99,6 @@ impl<'a> Battle<'a> {
             scale: 1.0,
             translation: body.translation().as_dvec3(),
         }
-    }
-
-    /// The rocks.
-    pub fn rocks(&self) -> &Rockfall {
-        &self.rocks
-    }
-
-    /// A 64-bit hash of the rocks' positions and rotations after the last tick.
-    pub fn rocks_fingerprint(&self) -> u64 {
-        self.rocks_fingerprint
     }
 
     /// A 64-bit hash of all beside the climber and the creature's pose: the rocks, and all that changes in a fight.

@@ -3,7 +3,6 @@
 use glam::Vec3;
 
 use super::*;
-use crate::Core;
 
 /// A level triangle at height 0, which contains the origin.
 const FLOOR: [Vec3; 3] = [
@@ -16,10 +15,8 @@ const FLOOR: [Vec3; 3] = [
 fn falling() -> MovingPair {
     MovingPair {
         corners: [FLOOR; 2],
-        core: Core::Sphere {
-            center: Vec3::Y * 3.0,
-            motion: Vec3::Y * -4.0,
-        },
+        ends: [Vec3::Y * 3.0; 2],
+        motions: [Vec3::Y * -4.0; 2],
         radius: 1.0,
     }
 }
@@ -51,10 +48,8 @@ fn a_fall_is_clear_up_to_contact_and_not_at_the_next_f64() {
 fn a_slide_is_clear_at_any_height_above_the_radius() {
     for (height, expected) in [(1.0f32.next_up(), true), (1.0, false)] {
         let pair = MovingPair {
-            core: Core::Capsule {
-                ends: [Vec3::new(-20.0, height, 0.0), Vec3::new(-19.0, height, 1.0)],
-                motions: [Vec3::X * 40.0; 2],
-            },
+            ends: [Vec3::new(-20.0, height, 0.0), Vec3::new(-19.0, height, 1.0)],
+            motions: [Vec3::X * 40.0; 2],
             ..falling()
         };
         let shown = Motion::new(&pair).apart(1.0, 1.0, Last::Included);
@@ -66,10 +61,8 @@ fn a_slide_is_clear_at_any_height_above_the_radius() {
 #[test]
 fn a_passage_through_a_face_between_two_clear_ends_is_found() {
     let pair = MovingPair {
-        core: Core::Sphere {
-            center: Vec3::new(0.0, 1e3, 0.0),
-            motion: Vec3::Y * -2048.0,
-        },
+        ends: [Vec3::new(0.0, 1e3, 0.0); 2],
+        motions: [Vec3::Y * -2048.0; 2],
         radius: 0.0,
         ..falling()
     };
@@ -89,7 +82,8 @@ fn certified_pairs_are_apart_at_random_times() {
         let motions = [point(), point()];
         let pair = MovingPair {
             corners,
-            core: Core::Capsule { ends, motions },
+            ends,
+            motions,
             radius: rng.f32() * 0.3,
         };
         let radius = f64::from(pair.radius);

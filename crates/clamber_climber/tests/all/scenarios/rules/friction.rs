@@ -1,17 +1,25 @@
 //! Ice, mud, wet fur, and frictions out of range.
 
 use clamber_climber::ClimberMode::{Falling, Holding, Standing};
-use clamber_climber::{ClimberConfig, ClimberInput, ContactRule};
+use clamber_climber::{ClimberConfig, ContactRule};
 use glam::DVec3;
 
-use super::scene::{Case, G, GRIP, ODD, at_every_rate, at_wall, but, person, wall};
-use crate::stage::{IDLE, JUMP, Run, Shape, radians, shifted, turned, walk, within};
+use super::scene::{Case, G, ODD, at_every_rate, at_wall, but, person, wall};
+use crate::input::{HOLD, IDLE, JUMP, grip_climb, walk};
+use crate::stage::{Run, Shape, radians, shifted, turned, within};
 
 /// A walker at rest on a floor with a friction.
 fn on_floor(case: Case, floor: &Shape, friction: f64) -> Run {
     let stage = case.stage().numbered(ODD).with_still(floor);
     let mut run = Run::new(stage, ClimberConfig::walker(), DVec3::ZERO).settle();
     run.set_rule(but(move |query| query.usual().with_friction(friction)));
+    run
+}
+
+/// A climber at a wall that it can grip, with a friction.
+fn on_wall(case: Case, friction: f64) -> Run {
+    let mut run = at_wall(case.stage().numbered(ODD).with_still(&wall(-9.0, 9.0)), 0.0);
+    run.set_rule(but(move |_| ContactRule::GRIP.with_friction(friction)));
     run
 }
 
@@ -26,16 +34,9 @@ pub(crate) fn ice_accelerates_and_brakes_slowly() {
         within!((went - pull / 2.0).abs(), 1e-3, "{case}: went {went} m");
         run.steps(case.ticks(1.5), &IDLE);
         let went = run.position().x - start;
-        within!(
-            (went - pull).abs(),
-            5e-3,
-            "{case}: came to rest at {went} m"
-        );
-        assert_eq!(
-            run.state().velocity.x,
-            run.state().base_velocity.x,
-            "{case}"
-        );
+        within!((went - pull).abs(), 5e-3, "{case}: rests at {went} m");
+        let state = run.state();
+        assert_eq!(state.velocity.x, state.base_velocity.x, "{case}");
         run.sound()
     });
 }
@@ -121,25 +122,17 @@ pub(crate) fn wet_fur_slips_through_hands() {
             let stage = at.stage().numbered(ODD).with_still(&wall(-9.0, 9.0));
             let mut run = at_wall(stage, 0.0);
             run.set_rule(but(|_| ContactRule::GRIP));
-            run.steps(at.ticks(0.5), &GRIP);
+            run.steps(at.ticks(0.5), &HOLD);
             assert_eq!(run.mode(), Holding, "{case}");
             run.set_rule(but(|_| ContactRule::GRIP.with_friction(0.5)));
             let start = run.position().y;
-            let input = ClimberInput {
-                climb: DVec3::Y * climb,
-                ..GRIP
-            };
+            let input = grip_climb(DVec3::Y * climb);
             run.steps(at.ticks(1.0), &input);
-            assert!(
-                run.trace.modes[1..].iter().all(|mode| *mode == Holding),
-                "{case}"
-            );
+            let mut modes = run.trace.modes[1..].iter();
+            assert!(modes.all(|mode| *mode == Holding), "{case}");
             let rose = run.position().y - start;
-            within!(
-                (rose - rise * climb_speed).abs(),
-                2e-3,
-                "{case}: rose {rose}"
-            );
+            let off = (rose - rise * climb_speed).abs();
+            within!(off, 2e-3, "{case}: rose {rose}");
             run.sound()
         });
     }
@@ -148,16 +141,11 @@ pub(crate) fn wet_fur_slips_through_hands() {
 /// Walks, jumps and stops on a floor, and climbs along a wall, with a friction.
 fn plays(case: Case, friction: f64) -> [Run; 2] {
     let mut walks = on_floor(case, &Shape::floor(9.0), friction);
-    let stage = case.stage().numbered(ODD).with_still(&wall(-9.0, 9.0));
-    let mut climbs = at_wall(stage, 0.0);
-    climbs.set_rule(but(move |_| ContactRule::GRIP.with_friction(friction)));
+    let mut climbs = on_wall(case, friction);
     walks.steps(case.ticks(0.5), &walk(DVec3::X));
     walks.step(&JUMP);
     walks.steps(case.ticks(1.5), &IDLE);
-    let up = ClimberInput {
-        climb: DVec3::new(0.6, 0.8, 0.0),
-        ..GRIP
-    };
+    let up = grip_climb(DVec3::new(0.6, 0.8, 0.0));
     climbs.steps(case.ticks(0.5), &up);
     [walks, climbs]
 }
@@ -202,15 +190,10 @@ pub(crate) fn the_stickiest_mud_holds_fast() {
             let start = walks.position();
             walks.steps(at.ticks(0.5), &walk(DVec3::X));
             stays(&walks, start, "walks");
-            let stage = at.stage().numbered(ODD).with_still(&wall(-9.0, 9.0));
-            let mut climbs = at_wall(stage, 0.0);
-            climbs.set_rule(but(move |_| ContactRule::GRIP.with_friction(friction)));
-            climbs.steps(at.ticks(0.5), &GRIP);
+            let mut climbs = on_wall(at, friction);
+            climbs.steps(at.ticks(0.5), &HOLD);
             let start = climbs.position();
-            let up = ClimberInput {
-                climb: DVec3::Y,
-                ..GRIP
-            };
+            let up = grip_climb(DVec3::Y);
             climbs.steps(at.ticks(0.5), &up);
             stays(&climbs, start, "climbs");
             climbs.sound();

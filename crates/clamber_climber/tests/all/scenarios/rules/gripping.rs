@@ -4,17 +4,16 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 use clamber_climber::ClimberMode::{Falling, Holding, LedgeHanging};
-use clamber_climber::{ClimberEvent, ClimberInput, ContactQuery, ContactRule};
+use clamber_climber::{ContactQuery, ContactRule};
 use glam::DVec3;
 
-use super::scene::{Case, GRIP, ODD, at_every_rate, at_wall, person, wall};
+use super::scene::{Case, ODD, at_every_rate, at_wall, person, wall};
+use crate::events::is_lost_footing;
+use crate::input::{HOLD, grip_climb, grip_walk};
 use crate::stage::{Run, Shape};
 
 pub(crate) fn armour_stops_hands() {
-    let up = ClimberInput {
-        climb: DVec3::Y,
-        ..GRIP
-    };
+    let up = grip_climb(DVec3::Y);
     at_every_rate(|case| {
         let stage = case
             .stage()
@@ -43,18 +42,14 @@ pub(crate) fn a_hold_that_is_refused_lets_go() {
         let closed = Rc::new(Cell::new(false));
         let is_closed = Rc::clone(&closed);
         run.set_rule(move |query| query.usual().with_grip(!is_closed.get()));
-        run.steps(case.ticks(0.5), &GRIP);
+        run.steps(case.ticks(0.5), &HOLD);
         assert_eq!(run.mode(), Holding, "{case}");
         closed.set(true);
-        let report = run.step(&GRIP);
+        let report = run.step(&HOLD);
         assert_eq!(run.mode(), Falling, "{case}");
-        let lost = |event: &ClimberEvent| matches!(event, ClimberEvent::LostFooting { .. });
-        assert!(
-            report.events.iter().any(lost),
-            "{case}: {:?}",
-            report.events
-        );
-        run.steps(case.ticks(0.3), &GRIP);
+        let lost = report.events.iter().any(is_lost_footing);
+        assert!(lost, "{case}: {:?}", report.events);
+        run.steps(case.ticks(0.3), &HOLD);
         assert_eq!(run.mode(), Falling, "{case}");
         run.sound()
     });
@@ -76,10 +71,7 @@ fn past_a_friend(case: Case, rule: Option<fn(&ContactQuery<'_>) -> ContactRule>)
             }
         });
     }
-    let towards = ClimberInput {
-        walk: DVec3::NEG_Z,
-        ..GRIP
-    };
+    let towards = grip_walk(DVec3::NEG_Z);
     run.steps(case.ticks(1.0), &towards);
     run
 }
@@ -96,11 +88,8 @@ pub(crate) fn a_friend_is_neither_hung_from_nor_gripped_unless_the_rule_says_so(
             ledge.mode()
         );
         let gripped = past_a_friend(case, Some(|_| ContactRule::GRIP));
-        assert!(
-            gripped.trace.modes.contains(&Holding),
-            "{case}: {:?}",
-            gripped.mode()
-        );
+        let mode = gripped.mode();
+        assert!(gripped.trace.modes.contains(&Holding), "{case}: {mode:?}");
         run.sound()
     });
 }

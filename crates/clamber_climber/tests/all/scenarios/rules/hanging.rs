@@ -3,20 +3,17 @@
 use std::cell::Cell;
 use std::rc::Rc;
 
-use clamber_climber::ClimberInput;
 use clamber_climber::ClimberMode::{Falling, LedgeHanging};
 use glam::DVec3;
 
-use super::scene::{GRIP, ODD, RADIUS, at_every_rate, but, person, wall};
+use super::scene::{ODD, RADIUS, at_every_rate, but, person, wall};
+use crate::input::grip_walk;
 use crate::stage::{Run, Shape};
 
 /// The climber falls off a ledge that the rule refuses, and does not pull itself up onto a top that the rule does not
 /// let it stand on.
 pub(crate) fn a_ledge_that_is_refused_is_let_go_and_one_without_footing_is_only_hung_from() {
-    let up = ClimberInput {
-        walk: DVec3::NEG_Z,
-        ..GRIP
-    };
+    let up = grip_walk(DVec3::NEG_Z);
     at_every_rate(|case| {
         let stage = case.stage().numbered(ODD).with_still(&wall(-9.0, 1.0));
         let mut config = person();
@@ -38,10 +35,7 @@ pub(crate) fn a_ledge_that_is_refused_is_let_go_and_one_without_footing_is_only_
 
 /// Hands go along a ledge, up to the part that they may not hold.
 pub(crate) fn hands_stop_where_a_ledge_may_not_be_held() {
-    let aside = ClimberInput {
-        walk: DVec3::X,
-        ..GRIP
-    };
+    let aside = grip_walk(DVec3::X);
     at_every_rate(|case| {
         let part = |from: f64, to: f64| {
             Shape::boxed(DVec3::new(from, -9.0, -1.0), DVec3::new(to, 1.0, 0.0))
@@ -55,10 +49,7 @@ pub(crate) fn hands_stop_where_a_ledge_may_not_be_held() {
         config.grip = None;
         let mut run = Run::new(stage, config, DVec3::new(0.0, 0.2, RADIUS));
         run.set_rule(but(|query| query.usual().with_hang(false)));
-        let face = ClimberInput {
-            walk: DVec3::NEG_Z * 0.1,
-            ..GRIP
-        };
+        let face = grip_walk(DVec3::NEG_Z * 0.1);
         run.steps(case.ticks(0.5), &face);
         assert_eq!(run.mode(), LedgeHanging, "{case}");
         for _ in 0..case.ticks(3.0) {

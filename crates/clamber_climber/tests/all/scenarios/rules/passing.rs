@@ -4,12 +4,13 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 use clamber_climber::ClimberMode::{Falling, Standing};
-use clamber_climber::{ClimberConfig, ClimberInput, ContactRule};
+use clamber_climber::{ClimberConfig, ContactRule};
 use clamber_world::ObstacleId;
 use glam::DVec3;
 
 use super::scene::{Case, G, ODD, RADIUS, at_every_rate, but};
-use crate::stage::{IDLE, JUMP, Run, Shape, Trace, shifted, walk, within};
+use crate::input::{IDLE, JUMP, high_jump, walk};
+use crate::stage::{Run, Shape, Trace, shifted, within};
 
 /// A plate of 6 cm and a sheet without thickness, with their tops at height 1.
 fn platforms() -> [Shape; 2] {
@@ -51,11 +52,7 @@ fn through_and_back(
     }));
     let mut run = run.settle();
     run.step(&JUMP);
-    let held = ClimberInput {
-        jump_held: true,
-        ..IDLE
-    };
-    run.steps(case.ticks(1.5), &held);
+    run.steps(case.ticks(1.5), &high_jump(false));
     let heights = run.trace.positions.iter().map(|at| at.y - RADIUS);
     let top = heights.fold(0.0, f64::max);
     let apex = 5.5 * 5.5 / (2.0 * G);
@@ -83,12 +80,8 @@ fn through_and_back(
     drops.set(false);
     run.steps(case.ticks(1.4), &IDLE);
     assert_eq!(run.mode(), Standing, "{case}");
-    within!(
-        run.feet().y.abs(),
-        1e-3,
-        "{case}: dropped to {}",
-        run.feet()
-    );
+    let feet = run.feet();
+    within!(feet.y.abs(), 1e-3, "{case}: dropped to {feet}");
     run.sound()
 }
 

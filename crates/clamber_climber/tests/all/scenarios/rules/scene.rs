@@ -2,10 +2,10 @@
 
 use core::fmt;
 
-use clamber_climber::{ClimberConfig, ClimberInput, ContactQuery, ContactRule};
+use clamber_climber::{ClimberConfig, ContactQuery, ContactRule};
 use glam::DVec3;
 
-use crate::stage::{IDLE, Played, Run, Shape, Stage, Trace, every};
+use crate::stage::{Played, Run, Shape, Stage, Trace, every};
 
 /// Radius of the body, metres.
 pub(crate) const RADIUS: f64 = 0.4;
@@ -15,9 +15,6 @@ pub(crate) const G: f64 = 9.81;
 
 /// Number of the shape that a rule treats differently; all other shapes have the number 0.
 pub(crate) const ODD: u32 = 1;
-
-/// Input that only holds the grip.
-pub(crate) const GRIP: ClimberInput = ClimberInput { grip: true, ..IDLE };
 
 /// Kind of the obstacles, and ticks a second.
 #[derive(Clone, Copy)]

@@ -6,7 +6,8 @@ use clamber_surface::geometry::Similarity;
 use glam::DVec3;
 
 use super::scene::{G, ODD, RADIUS, at_every_rate, but};
-use crate::stage::{IDLE, Run, Shape, radians, walk, within};
+use crate::input::{IDLE, walk};
+use crate::stage::{Run, Shape, radians, within};
 
 pub(crate) fn ground_that_may_not_be_stood_on_is_slid_off() {
     let angle = radians(20.0);
@@ -45,12 +46,8 @@ pub(crate) fn a_curb_that_may_not_be_stepped_onto_blocks() {
             let before = libm::sqrt(RADIUS * RADIUS - (RADIUS - height) * (RADIUS - height));
             let x = run.position().x;
             // A body that is pressed onto its ground meets the edge up to one and a half margins early.
-            within!(
-                (x - 1.0 + before).abs(),
-                0.015,
-                "{case}: stops at {}",
-                run.position()
-            );
+            let place = run.position();
+            within!((x - 1.0 + before).abs(), 0.015, "{case}: stops at {place}");
             within!(run.feet().y.abs(), 1e-3, "{case}: stands at {}", run.feet());
             // Once the climber has jumped onto the step, it walks there.
             run.step(&ClimberInput {

@@ -5,12 +5,10 @@ use std::ops::Range;
 use super::model::Model;
 use super::sound::assert_poses_hold;
 use super::{bent, rigid};
-use crate::geometry::Similarity;
 use crate::mesh::clusters::{Cluster, Clusters};
-use crate::mesh::hierarchy::Child;
 use crate::mesh::{ColliderMesh, PartId, SurfaceTag, TriangleId, VertexId};
 use crate::surface::{Diagnostics, SkinnedSurface};
-use crate::testing::{ball, bend, tube};
+use crate::testing::{advance, ball, bend, clusters_below, tube};
 use glam::{DVec3, Vec3};
 
 /// The part that the tests edit.
@@ -84,18 +82,14 @@ fn an_edit_reclusters_only_its_part_and_keeps_other_cached_results() {
     };
     assert_eq!(after, wanted);
     assert!(after.vertices_skinned > 0 && after.vertices_skinned < after.vertices);
-    assert_eq!(
-        surface.instance.current.asked_clusters().count(),
-        before.len()
-    );
+    let asked = surface.instance.current.asked_clusters();
+    assert_eq!(asked.count(), before.len());
 
     // The rest is skinned on demand, and nothing twice.
     assert_eq!(touch_everything(&surface), all);
     assert_eq!(surface.diagnostics().clusters_skinned, wanted.clusters);
-    assert_eq!(
-        surface.instance.current.asked_clusters().count(),
-        wanted.clusters
-    );
+    let asked = surface.instance.current.asked_clusters();
+    assert_eq!(asked.count(), wanted.clusters);
     assert_poses_hold(&surface, "lazily");
 
     // The same holds for clusters that were skinned ahead.
@@ -115,7 +109,9 @@ fn an_edit_reclusters_only_its_part_and_keeps_other_cached_results() {
     for (index, node) in (0..).zip(&mesh.hierarchy().nodes) {
         let bounds = ahead.instance.current.bounds(mesh, index);
         for lane in 0..usize::from(node.lanes) {
-            let dead = is_dead(mesh, node.child(lane));
+            let below = clusters_below(mesh.hierarchy(), node.child(lane));
+            let clusters = &mesh.clusters().clusters;
+            let dead = below.iter().all(|c| clusters[*c as usize].is_dead());
             assert_eq!(bounds.is_empty(lane), dead, "node {index}, lane {lane}");
             empty += usize::from(dead);
         }
@@ -124,34 +120,20 @@ fn an_edit_reclusters_only_its_part_and_keeps_other_cached_results() {
     assert_poses_hold(&ahead, "ahead again");
 }
 
-/// True if no cluster below `child` lives.
-fn is_dead(mesh: &ColliderMesh, child: Child) -> bool {
-    match child {
-        Child::Cluster(index) => mesh.clusters().clusters[index as usize].is_dead(),
-        Child::Node(index) => {
-            let node = &mesh.hierarchy().nodes[index as usize];
-            (0..usize::from(node.lanes)).all(|lane| is_dead(mesh, node.child(lane)))
-        }
-    }
-}
-
 #[test]
 fn dead_clusters_do_not_prevent_skinning_ahead() {
     let mut surface = bent(7, 24);
-    let corners = surface.mesh().parts()[..6].iter().map(|p| p.triangles[0]);
-    let corners: Vec<_> = corners
-        .map(|t| surface.mesh().triangles()[t.index()])
-        .collect();
+    let mesh = ColliderMesh::clone(surface.mesh());
     surface.edit(|edit| {
-        for corners in corners {
+        for part in &mesh.parts()[..6] {
+            let corners = mesh.triangles()[part.triangles[0].index()];
             edit.add_triangle(corners, SurfaceTag::default()).unwrap();
         }
     });
     let clusters = surface.mesh().clusters();
     assert!(clusters.dead * 3 > clusters.living(), "{}", clusters.dead);
     touch_everything(&surface);
-    let bent = bend(7, DVec3::Z, 0.4);
-    surface.advance(&bent, Similarity::IDENTITY).unwrap();
+    advance(&mut surface, &bend(7, DVec3::Z, 0.4));
     let diagnostics = surface.diagnostics();
     assert_eq!(diagnostics.clusters_skinned, diagnostics.clusters);
 }
@@ -160,10 +142,7 @@ fn dead_clusters_do_not_prevent_skinning_ahead() {
 fn a_change_of_tag_touches_no_cluster() {
     let mut surface = bent(5, 12);
     touch_everything(&surface);
-    let (clusters, hierarchy) = (
-        surface.mesh().clusters().clone(),
-        surface.mesh().hierarchy().clone(),
-    );
+    let mesh = ColliderMesh::clone(surface.mesh());
     let before = surface.diagnostics();
     let tag = SurfaceTag {
         ..SurfaceTag::default()
@@ -173,8 +152,8 @@ fn a_change_of_tag_touches_no_cluster() {
         .unwrap();
     assert_eq!(surface.mesh().tags()[7], tag);
     assert_eq!(surface.diagnostics(), before);
-    assert_eq!(*surface.mesh().clusters(), clusters);
-    assert_eq!(*surface.mesh().hierarchy(), hierarchy);
+    assert_eq!(surface.mesh().clusters(), mesh.clusters());
+    assert_eq!(surface.mesh().hierarchy(), mesh.hierarchy());
 }
 
 #[test]

@@ -3,9 +3,8 @@
 use std::collections::BTreeSet;
 
 use crate::mesh::{Influence, PartId, SurfaceKind, SurfaceTag, TriangleId, VertexId};
-use crate::rig::JointId;
 use crate::surface::{SkinnedSurface, SurfaceEdit, SurfaceError};
-use crate::testing::point;
+use crate::testing::{influence, point};
 use glam::Vec3;
 
 /// Kinds of edits: four flags, two additions, two removals, a tag.
@@ -118,10 +117,7 @@ impl Model {
         let count = [1, 2, 4, 9][rng.usize(0..4)];
         let first = rng.u32(0..self.joints);
         let influences: Vec<Influence> = (0..count)
-            .map(|k| Influence {
-                joint: JointId((first + k / 2) % self.joints),
-                weight: rng.f32() + 0.01,
-            })
+            .map(|k| influence((first + k / 2) % self.joints, rng.f32() + 0.01))
             .collect();
         let id = edit.add_vertex(position, &influences).unwrap();
         assert_eq!(id.index(), self.vertices.len(), "an id used twice");
@@ -199,11 +195,8 @@ impl Model {
         assert_eq!(mesh.positions().len(), self.vertices.len(), "{case}");
         for (id, position) in (0..).map(VertexId).zip(&self.vertices) {
             assert_eq!(mesh.has_vertex(id), position.is_some(), "{case}: {id}");
-            assert_eq!(
-                surface.in_model().position(id).is_some(),
-                position.is_some(),
-                "{case}"
-            );
+            let posed = surface.in_model().position(id);
+            assert_eq!(posed.is_some(), position.is_some(), "{case}");
             if let Some(position) = position {
                 assert_eq!(mesh.positions()[id.index()], *position, "{case}: {id}");
             }

@@ -3,30 +3,22 @@
 use super::{bent, rigid};
 use crate::geometry::{Affine, Similarity};
 use crate::mesh::{
-    ColliderMesh, Influence, MeshError, PaletteError, PartId, SurfaceTag, TriangleId, VertexId,
+    ColliderMesh, MeshError, PaletteError, PartId, SurfaceTag, TriangleId, VertexId,
 };
 use crate::rig::{JointId, Palette};
 use crate::surface::{Diagnostics, SkinnedSurface, SurfaceEdit, SurfaceError};
-use crate::testing::{bend, tube};
+use crate::testing::{bend, influence, tube};
 use glam::{DVec3, Vec3};
 
 /// All state that an edit could change.
 fn state(surface: &SkinnedSurface) -> (ColliderMesh, Diagnostics, String) {
-    let flags = (
-        &surface.instance.part_enabled,
-        &surface.instance.triangle_hidden,
-    );
-    let roots = (
-        surface.instance.current.root(),
-        surface.instance.previous.root(),
-    );
-    let hidden = surface.instance.hidden_triangles;
+    let instance = &surface.instance;
+    let flags = (&instance.part_enabled, &instance.triangle_hidden);
+    let roots = (instance.current.root(), instance.previous.root());
+    let hidden = instance.hidden_triangles;
     let others = format!("{flags:?} {hidden} {roots:?} {}", surface.memory());
-    (
-        surface.mesh().as_ref().clone(),
-        surface.diagnostics(),
-        others,
-    )
+    let mesh = surface.mesh().as_ref().clone();
+    (mesh, surface.diagnostics(), others)
 }
 
 fn assert_refused<T: std::fmt::Debug>(
@@ -103,21 +95,15 @@ fn vertices_that_a_build_would_refuse() {
         let error = assert_refused(&mut surface, |edit| edit.add_vertex(position, &rigid(0)));
         assert_eq!(error, MeshError::Position { vertex }.into(), "{bad}");
     }
-    let joint = JointId(4);
     let error = assert_refused(&mut surface, |edit| edit.add_vertex(Vec3::X, &rigid(4)));
-    let joints = 4;
     let wanted = MeshError::JointOutOfRange {
         vertex,
-        joint,
-        joints,
+        joint: JointId(4),
+        joints: 4,
     };
     assert_eq!(error, wanted.into());
     for weights in [&[][..], &[0.0], &[0.0, 0.0], &[-0.5, 1.0], &[f32::INFINITY]] {
-        let influence = |weight: &f32| Influence {
-            joint: JointId(1),
-            weight: *weight,
-        };
-        let influences: Vec<_> = weights.iter().map(influence).collect();
+        let influences: Vec<_> = weights.iter().map(|w| influence(1, *w)).collect();
         let error = assert_refused(&mut surface, |edit| edit.add_vertex(Vec3::X, &influences));
         let weights = weights.to_vec();
         assert_eq!(error, MeshError::Weights { vertex, weights }.into());

@@ -7,6 +7,7 @@ use crate::mesh::hierarchy::Child;
 use crate::mesh::{ColliderMesh, TriangleId, VertexId};
 use crate::pose::PosedMesh;
 use crate::surface::SkinnedSurface;
+use crate::testing::{bits, clusters_below, positions_of};
 use glam::{DVec3, Vec3};
 
 /// Living clusters, each with how often the hierarchy leads to it.
@@ -14,15 +15,8 @@ fn reached(mesh: &ColliderMesh) -> BTreeMap<u32, usize> {
     let hierarchy = mesh.hierarchy();
     let mut found = BTreeMap::new();
     for root in [0].into_iter().chain(hierarchy.further_roots()) {
-        let mut nodes = vec![root];
-        while let Some(index) = nodes.pop() {
-            let node = &hierarchy.nodes[index as usize];
-            for lane in 0..usize::from(node.lanes) {
-                match node.child(lane) {
-                    Child::Node(child) => nodes.push(child),
-                    Child::Cluster(cluster) => *found.entry(cluster).or_default() += 1,
-                }
-            }
+        for cluster in clusters_below(hierarchy, Child::Node(root)) {
+            *found.entry(cluster).or_default() += 1;
         }
     }
     assert!(hierarchy.further_roots().count() <= mesh.parts().len());
@@ -68,10 +62,9 @@ pub(super) fn assert_sound(mesh: &ColliderMesh, case: &str) {
 /// bounds above them.
 pub(super) fn assert_poses_hold(surface: &SkinnedSurface, case: &str) {
     let mesh = surface.mesh();
-    let mut all = Vec::new();
-    surface.skin_all(&mut all);
+    let all = bits(&positions_of(surface));
     let wanted = skin_scalar(mesh, surface.instance.current.palette()).unwrap();
-    assert_eq!(bits(&all), bits(&wanted), "{case}: skin_all");
+    assert_eq!(all, bits(&wanted), "{case}: skin_all");
     for pose in [&surface.instance.current, &surface.instance.previous] {
         let skinned = skin_scalar(mesh, pose.palette()).unwrap();
         check_clusters(mesh, pose, &skinned, case);
@@ -109,9 +102,4 @@ fn check_clusters(mesh: &ColliderMesh, pose: &PosedMesh, skinned: &[Vec3], case:
             }
         }
     }
-}
-
-pub(super) fn bits(positions: &[Vec3]) -> Vec<[u32; 3]> {
-    let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
-    positions.iter().map(bits).collect()
 }

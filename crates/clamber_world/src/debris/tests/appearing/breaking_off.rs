@@ -1,8 +1,15 @@
 //! Rocks that are spawned below the skin, as pieces that break off.
 
 use glam::DVec3;
+use rapier3d::prelude::*;
 
-use super::{Does, Stage, settings, shapes};
+use super::{Does, Setting, Stage, settings, shapes};
+
+/// A scene's name in messages.
+fn told(shape: &ColliderBuilder, size: f32, depth: f64, (rate, frame, scale): Setting) -> String {
+    let kind = shape.shape.shape_type();
+    format!("{kind:?} of {size} m, {depth} radii deep, {rate} Hz, {frame} m/s, scale {scale}")
+}
 
 /// A creature on which rocks of a size lie.
 fn stage(rate: u32, frame: DVec3, size: f32, scale: f64) -> Stage {
@@ -19,11 +26,8 @@ fn a_rock_of_which_something_shows_comes_out_and_lies_on_the_skin() {
     for size in [0.02, 0.05, 0.3, 1.0, 5.0, 30.0] {
         for (shape, radius) in shapes(size) {
             for depth in [0.0, 0.02, 0.1, 0.3, 0.49, 0.51, 0.7, 0.97] {
-                let (rate, frame, scale) = settings.next().unwrap();
-                let case = format!(
-                    "{:?} of {size} m, {depth} radii deep, {rate} Hz, {frame} m/s, scale {scale}",
-                    shape.shape.shape_type()
-                );
+                let setting @ (rate, frame, scale) = settings.next().unwrap();
+                let case = told(&shape, size, depth, setting);
                 let mut stage = stage(rate, frame, size, scale);
                 let top = stage.creatures[0].half.y;
                 let start = DVec3::new(0.3, 0.0, -0.4) * f64::from(size);
@@ -37,28 +41,21 @@ fn a_rock_of_which_something_shows_comes_out_and_lies_on_the_skin() {
                     stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
                     let place = stage.place(rock);
                     let out = tick as f64 * stage.dt > 0.45;
-                    assert!(
-                        !out || !stage.debris.is_put_out(rock) && place.y > top,
-                        "{case}: at {place} in tick {tick}"
-                    );
+                    let is_out = !stage.debris.is_put_out(rock) && place.y > top;
+                    assert!(!out || is_out, "{case}: at {place} in tick {tick}");
                     if depth > 0.5 {
                         // A body that the skin reaches less deep into is put back in front of the skin at once.
                         let risen = (place.y - last.y) / stage.dt;
-                        assert!(
-                            risen < radius / 0.2 * 1.2 + 1.0,
-                            "{case}: rises at {risen} m/s in tick {tick}"
-                        );
+                        let most = radius / 0.2 * 1.2 + 1.0;
+                        assert!(risen < most, "{case}: rises at {risen} m/s in tick {tick}");
                     }
                     highest = highest.max(place.y);
                     last = place;
                 }
                 let tall = f64::from(size) * 1.1 + 0.02;
-                assert!(
-                    highest < top + 1.5 * tall && last.y > top && last.y < top + tall,
-                    "{case}: was {} over the skin, lies at {}",
-                    highest - top,
-                    last.y - top
-                );
+                let [was, lies] = [highest, last.y].map(|y| y - top);
+                assert!(was < 1.5 * tall, "{case}: was {was} over the skin");
+                assert!(lies > 0.0 && lies < tall, "{case}: lies at {lies}");
                 assert!(!stage.debris.is_let_through(rock), "{case}");
             }
         }
@@ -71,11 +68,8 @@ fn a_rock_of_which_nothing_shows_falls_through_the_creature() {
     for size in [0.02, 0.05, 0.3, 5.0, 30.0] {
         for (shape, radius) in shapes(size) {
             for depth in [1.1, 2.0, 3.0] {
-                let (rate, frame, scale) = settings.next().unwrap();
-                let case = format!(
-                    "{:?} of {size} m, {depth} radii deep, {rate} Hz, {frame} m/s, scale {scale}",
-                    shape.shape.shape_type()
-                );
+                let setting @ (rate, frame, scale) = settings.next().unwrap();
+                let case = told(&shape, size, depth, setting);
                 let mut stage = stage(rate, frame, size, scale);
                 let top = stage.creatures[0].half.y;
                 for _ in 0..3 {
@@ -115,10 +109,8 @@ fn a_rock_comes_out_of_the_side_that_is_nearest() {
             // The rock has fallen beside or below the creature.
             let place = stage.place(rock);
             let ahead = place.dot(way);
-            assert!(
-                ahead > half.dot(way.abs()) + 0.9 * radius,
-                "{case}: at {place}"
-            );
+            let is_out = ahead > half.dot(way.abs()) + 0.9 * radius;
+            assert!(is_out, "{case}: at {place}");
             let aside = (place - start).with_y(0.0) - way * (place - start).with_y(0.0).dot(way);
             assert!(aside.length() < 0.01, "{case}: at {place}");
         }
@@ -141,10 +133,7 @@ fn a_rock_with_a_velocity_of_its_own_keeps_it() {
             highest = highest.max(stage.place(rock).y - top);
         }
         // As high as a throw takes it: v^2 / 2 g, less its depth at the start.
-        assert!(
-            highest > 1.4 && highest < 1.7,
-            "{case}: {highest} m over the skin"
-        );
+        assert!((1.4..1.7).contains(&highest), "{case}: {highest} m high");
     }
 }
 

@@ -98,15 +98,13 @@ fn skin_that_comes_back_leaves_no_rock_below_it() {
                     "{change:?}, shape {shape}, {size} m, deep {deep}, after the pose {late}, {rate} Hz, {frame} m/s"
                 );
                 let unit = f64::from(size);
-                let mut stage = Stage::new(rate, frame);
-                stage.allow_any_speed();
                 let half = DVec3::new(13.0, 6.0, 13.0) * unit;
-                stage.creature(3, half, scale);
+                let mut stage = Stage::with_creature(rate, frame, half, scale);
+                stage.allow_any_speed();
                 let (shape, radius) = shapes(size).swap_remove(shape);
                 let low = low * unit;
                 let middle = if deep { 0.0 } else { half.y - 0.6 * radius };
                 stage.ground((middle - low) as f32);
-                stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
                 let calm = [Does::Moves(DVec3::ZERO)];
                 let top = Top::of(&stage.creatures[0].surface);
                 top.take(change, &mut stage.creatures[0].surface);
@@ -160,10 +158,8 @@ fn a_rock_comes_out_of_a_creature_that_is_edited_in_every_tick() {
     for (rate, frame, scale) in settings().take(20) {
         for by_edit in [false, true] {
             let case = format!("by an edit {by_edit}, {rate} Hz, {frame} m/s, scale {scale}");
-            let mut stage = Stage::new(rate, frame);
             let half = DVec3::new(4.0, 2.0, 4.0);
-            stage.creature(3, half, scale);
-            stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
+            let mut stage = Stage::with_creature(rate, frame, half, scale);
             let (shape, radius) = shapes(0.3).swap_remove(0);
             let rock = stage.rock(&shape, DVec3::new(0.3, half.y - 0.8 * radius, 0.2));
             let mut out = None;
@@ -193,10 +189,8 @@ fn a_rock_comes_out_of_a_creature_that_is_edited_in_every_tick() {
 fn a_rock_whose_way_out_is_edited_away_is_let_through() {
     for (rate, frame, scale) in settings().take(20) {
         let case = format!("{rate} Hz, {frame} m/s, scale {scale}");
-        let mut stage = Stage::new(rate, frame);
         let half = DVec3::new(4.0, 2.0, 4.0);
-        stage.creature(3, half, scale);
-        stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
+        let mut stage = Stage::with_creature(rate, frame, half, scale);
         let calm = [Does::Moves(DVec3::ZERO)];
         let (shape, radius) = shapes(0.3).swap_remove(0);
         let rock = stage.rock(&shape, DVec3::new(0.3, half.y - 0.9 * radius, 0.2));
@@ -227,29 +221,24 @@ fn a_rock_whose_way_out_is_edited_away_is_let_through() {
 #[test]
 fn a_limb_that_is_posed_around_a_rock_does_not_keep_it() {
     let palette = |up: f64| lifted(8, |joint| if joint >= 6 { up } else { 0.0 });
+    let root = Similarity::IDENTITY;
     for moved_after in [false, true] {
         for (low, through) in [(1.0, false), (0.2, true)] {
             let mut scene = Scene::new(slab(Vec3::new(8.0, 1.0, 2.0), 0.5, 8));
             scene.ground(-1.0);
             let (rock, _) = scene.drop(ColliderBuilder::ball(0.3), Vector::new(6.8, 1.31, 0.2));
-            scene
-                .surface
-                .place(&palette(0.0), Similarity::IDENTITY)
-                .unwrap();
+            scene.surface.place(&palette(0.0), root).unwrap();
             for _ in 0..60 {
-                scene.tick(&palette(0.0), Similarity::IDENTITY);
+                scene.tick(&palette(0.0), root);
             }
             // The last quarter jumps up around it.
             let up = 1.5 - low;
-            scene
-                .surface
-                .place(&palette(up), Similarity::IDENTITY)
-                .unwrap();
+            scene.surface.place(&palette(up), root).unwrap();
             let case = format!("up by {up} m, moved {moved_after}");
             let mut found = 0;
             for tick in 0..120 {
                 if moved_after || tick > 0 {
-                    found += scene.tick(&palette(up), Similarity::IDENTITY).enclosed;
+                    found += scene.tick(&palette(up), root).enclosed;
                 } else {
                     found += scene.step().enclosed;
                 }
@@ -267,9 +256,8 @@ fn a_rock_that_the_game_moves_into_a_creature_does_not_stay_there() {
     for rate in [30, 60, 240] {
         for (deep, through) in [(0.2, false), (1.0, true)] {
             let case = format!("{deep} m deep, {rate} Hz");
-            let mut stage = Stage::new(rate, DVec3::ZERO);
-            stage.creature(3, DVec3::new(6.0, 2.0, 6.0), 1.0);
-            stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
+            let half = DVec3::new(6.0, 2.0, 6.0);
+            let mut stage = Stage::with_creature(rate, DVec3::ZERO, half, 1.0);
             let (shape, _) = shapes(0.3).remove(0);
             let rock = stage.rock(&shape, DVec3::Y * 2.3);
             for tick in 0..3 * rate {

@@ -66,14 +66,11 @@ fn rocks_on_the_ground_are_let_through_by_a_creature_that_appears_there_and_walk
                     stage.tick(&case, &[does]);
                     control.tick(&case, &[Does::IsAway]);
                 }
+                let mut does = Does::IsPlaced(here);
                 if way == Way::PlacedAndMoved {
-                    stage.pose(&[Does::IsPlaced(here)]);
+                    stage.pose(&[does]);
+                    does = Does::Moves(here);
                 }
-                let does = if way == Way::PlacedAndMoved {
-                    Does::Moves(here)
-                } else {
-                    Does::IsPlaced(here)
-                };
                 let report = stage.tick(&case, &[does]);
                 assert_eq!((report.enclosed, report.caught), (9, 9), "{case}");
                 control.tick(&case, &[Does::IsAway]);
@@ -91,10 +88,8 @@ fn rocks_on_the_ground_are_let_through_by_a_creature_that_appears_there_and_walk
                 for (number, (rock, same)) in rocks.iter().zip(same).enumerate() {
                     assert!(!stage.debris.is_let_through(*rock), "{case}");
                     let off = stage.place(*rock) - control.place(same);
-                    assert!(
-                        off.length() < 0.1 * unit,
-                        "{case}: rock {number} carried by {off}"
-                    );
+                    let is_near = off.length() < 0.1 * unit;
+                    assert!(is_near, "{case}: rock {number} carried by {off}");
                 }
             }
         }
@@ -137,10 +132,8 @@ fn rocks_under_the_back_of_a_creature_that_appears_come_out_on_it() {
             }
             for rock in rocks {
                 let place = stage.place(rock);
-                assert!(
-                    place.y > 1.2 && place.y < 1.5 && !stage.debris.is_let_through(rock),
-                    "{case}: it lies at {place}"
-                );
+                assert!(!stage.debris.is_let_through(rock), "{case}");
+                assert!(place.y > 1.2 && place.y < 1.5, "{case}: at {place}");
             }
         }
     }
@@ -155,13 +148,13 @@ fn a_creature_that_is_placed_again_and_again_leaves_no_rock_inside() {
             stage.creature(3, DVec3::new(6.0, 1.0, 6.0), 1.0);
             let rocks = nine(&mut stage, 0.3);
             let higher = DVec3::new(0.4, 1.9, 0.3);
-            rocks.iter().for_each(|rock| {
+            for rock in &rocks {
                 let body = &mut stage.world.bodies[*rock];
                 let raised = body.translation() + Vector::Y * 1.4;
                 if raised.x > 0.5 {
                     body.set_translation(raised, true);
                 }
-            });
+            }
             let places = [
                 DVec3::Y,
                 DVec3::new(1.0, 1.2, 0.0),
@@ -181,10 +174,8 @@ fn a_creature_that_is_placed_again_and_again_leaves_no_rock_inside() {
                 for rock in &rocks {
                     let (place, velocity) = (stage.place(*rock), stage.velocity(*rock));
                     assert!(place.y > 0.0, "{case}: in the ground at {place}");
-                    assert!(
-                        velocity.length() < 12.0,
-                        "{case}: {velocity} m/s in tick {tick}"
-                    );
+                    let slow = velocity.length() < 12.0;
+                    assert!(slow, "{case}: {velocity} m/s in tick {tick}");
                 }
             }
             for _ in 0..3 * rate {
@@ -229,21 +220,15 @@ fn a_rock_that_sleeps_on_a_creature_falls_when_the_creature_is_placed_around_it(
                     stage.tick(&case, &[Does::Moves(high), Does::IsAway])
                 }
             };
+            let here = high + DVec3::Y * [0.0, 0.5][usize::from(way == Way::Spawned)];
             for _ in 0..180 {
-                let here = if way == Way::Spawned {
-                    high + DVec3::Y * 0.5
-                } else {
-                    high
-                };
                 stage.tick(&case, &[Does::Moves(here), Does::IsAway]);
             }
             let place = stage.place(rock);
             let top = 1.0 + rise;
             assert_eq!(place.y < -2.0, through, "{case}: {place}");
-            assert!(
-                through || (place.y - top - 0.3).abs() < 0.01,
-                "{case}: {place}"
-            );
+            let on_top = (place.y - top - 0.3).abs() < 0.01;
+            assert!(through || on_top, "{case}: {place}");
         }
     }
 }
@@ -253,12 +238,7 @@ fn a_large_rock_and_a_small_creature_come_apart() {
     for way in WAYS {
         for rate in [30, 60, 240] {
             // In the tick in which skin is placed, it counts as standing still for bodies that it touches.
-            let frame = DVec3::X
-                * if way == Way::PlacedAndMoved {
-                    30.0
-                } else {
-                    0.0
-                };
+            let frame = DVec3::X * [0.0, 30.0][usize::from(way == Way::PlacedAndMoved)];
             for apart in [0.0, 0.05, 0.3, 0.6, 0.9, 1.05] {
                 let case = format!("{way:?}, {rate} Hz, {frame} m/s, {apart} radii apart");
                 let radius = 5.0;
@@ -283,10 +263,8 @@ fn a_large_rock_and_a_small_creature_come_apart() {
                 }
                 let off = stage.place(rock) - here;
                 let gap = (off.abs() - half).max(DVec3::ZERO).length();
-                assert!(
-                    gap > 0.97 * f64::from(radius),
-                    "{case}: {gap} m from the middle"
-                );
+                let least = 0.97 * f64::from(radius);
+                assert!(gap > least, "{case}: {gap} m from the middle");
                 let passes = stage.debris.is_let_through(rock) || stage.debris.is_put_out(rock);
                 assert!(!passes, "{case}");
                 let speed = stage.velocity(rock).length();

@@ -57,11 +57,9 @@ fn skin_that_is_added_over_a_rock_on_a_creature_does_not_keep_it() {
                         "below {below:?}, shape {shape}, {size} m, {deep} deep, {rate} Hz, {frame} m/s"
                     );
                     let unit = f64::from(size);
-                    let mut stage = Stage::new(rate, frame);
-                    stage.allow_any_speed();
                     let half = DVec3::new(8.0, 4.0, 8.0) * unit;
-                    stage.creature(3, half, scale);
-                    stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
+                    let mut stage = Stage::with_creature(rate, frame, half, scale);
+                    stage.allow_any_speed();
                     let calm = [Does::Moves(DVec3::ZERO)];
                     let (shape, radius) = shapes(size).swap_remove(shape);
                     let start = DVec3::new(0.3 * unit, half.y + 1.1 * unit, -0.4 * unit);
@@ -70,12 +68,8 @@ fn skin_that_is_added_over_a_rock_on_a_creature_does_not_keep_it() {
                         assert_eq!(stage.tick(&case, &calm).enclosed, 0, "{case}");
                     }
                     let high = stage.place(rock).y + deep * radius - half.y;
-                    grow(
-                        &mut stage.creatures[0].surface,
-                        1.0,
-                        (high / scale) as f32,
-                        below,
-                    );
+                    let surface = &mut stage.creatures[0].surface;
+                    grow(surface, 1.0, (high / scale) as f32, below);
                     let mut report = stage.tick(&case, &calm);
                     assert_eq!(report.enclosed, 1, "{case}");
                     assert_eq!(report.put_out, u32::from(deep < 1.0), "{case}");
@@ -111,11 +105,9 @@ fn skin_that_is_added_over_a_rock_on_a_creature_does_not_keep_it() {
 fn a_rock_in_a_closed_hollow_is_let_through_for_as_long_as_it_is_there() {
     for (rate, frame, scale) in settings().take(20) {
         let case = format!("{rate} Hz, {frame} m/s, scale {scale}");
-        let mut stage = Stage::new(rate, frame);
-        stage.world.gravity = Vec3::ZERO;
         let half = DVec3::new(4.0, 1.0, 4.0);
-        stage.creature(3, half, scale);
-        stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
+        let mut stage = Stage::with_creature(rate, frame, half, scale);
+        stage.world.gravity = Vec3::ZERO;
         let (shape, _) = shapes(0.3).swap_remove(0);
         let place = DVec3::Y * 1.33;
         let rock = stage.rock(&shape, place);
@@ -143,9 +135,8 @@ fn skin_that_is_added_beside_a_rock_does_not_touch_it() {
         for below in [Below::Stays, Below::IsRemoved] {
             let case = format!("below {below:?}, {rate} Hz, {frame} m/s, scale {scale}");
             let [(mut stage, rock), (mut control, same)] = [0, 1].map(|_| {
-                let mut stage = Stage::new(rate, frame);
-                stage.creature(3, DVec3::new(4.0, 1.0, 4.0), scale);
-                stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
+                let half = DVec3::new(4.0, 1.0, 4.0);
+                let mut stage = Stage::with_creature(rate, frame, half, scale);
                 let (shape, _) = shapes(0.3).swap_remove(1);
                 let rock = stage.rock(&shape, DVec3::new(5.0, 1.0, 0.2));
                 (stage, rock)
@@ -171,10 +162,9 @@ fn a_rock_that_cannot_come_out_of_a_creature_that_is_placed_again_and_again_is_l
     let slow = settings().filter(|(_, frame, _)| frame.length() < 100.0);
     for (rate, frame, scale) in slow.take(16) {
         let case = format!("{rate} Hz, {frame} m/s, scale {scale}");
-        let mut stage = Stage::new(rate, frame);
+        let half = DVec3::new(4.0, 2.0, 4.0);
+        let mut stage = Stage::with_creature(rate, frame, half, scale);
         stage.world.gravity = Vec3::ZERO;
-        stage.creature(3, DVec3::new(4.0, 2.0, 4.0), scale);
-        stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
         let (shape, radius) = shapes(0.3).swap_remove(0);
         let rock = stage.rock(&shape, DVec3::Y * (2.0 - 0.5 * radius));
         let mut waits = 0.0;

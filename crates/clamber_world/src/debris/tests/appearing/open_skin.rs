@@ -1,15 +1,13 @@
 //! Rocks beside open skin, which has no inside, and rocks that no skin has appeared around.
 
-use std::sync::Arc;
-
 use clamber_surface::geometry::Similarity;
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 use rapier3d::prelude::*;
 
 use super::super::scene::{CREATURE, DT, Scene, at, lifted, slab};
 use super::shapes;
+use crate::testing::{rest, rigid};
 
 /// A sheet of skin over a grid of `cells` by `cells`, 8 m wide, bent by `bend`; turned over if `over` is true.
 fn sheet(cells: u32, over: bool, bend: impl Fn(f32, f32) -> Vec3) -> SkinnedSurface {
@@ -24,9 +22,7 @@ fn sheet(cells: u32, over: bool, bend: impl Fn(f32, f32) -> Vec3) -> SkinnedSurf
             triangles.extend(both.map(|[p, q, r]| if over { [p, r, q] } else { [p, q, r] }));
         }
     }
-    let source = MeshSource::rigid(&positions, &triangles);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
-    SkinnedSurface::new(Arc::new(mesh))
+    rigid(&positions, &triangles)
 }
 
 /// Forgets what debris knows, so that it looks at every rock again.
@@ -60,13 +56,12 @@ fn a_rock_on_open_skin_stays_on_it_whatever_side_that_is() {
                 let case = format!("{name}, over {over}, {:?}", shape.shape.shape_type());
                 let mut scene = Scene::new(sheet(16, over, bend));
                 let (rock, _) = scene.drop(shape, Vector::new(0.2, 0.7, 0.1));
-                let still = lifted(1, |_| 0.0);
                 for tick in 0..400 {
                     forget(&mut scene);
                     if tick % 5 == 0 {
-                        scene.surface.place(&still, Similarity::IDENTITY).unwrap();
+                        scene.surface.place(&rest(), Similarity::IDENTITY).unwrap();
                     }
-                    let report = scene.tick(&still, Similarity::IDENTITY);
+                    let report = scene.tick(&rest(), Similarity::IDENTITY);
                     assert_eq!(report.enclosed, 0, "{case}, tick {tick}");
                     let place = scene.in_model(rock);
                     let under = f64::from(bend(place.x as f32, place.z as f32).y);
@@ -93,14 +88,13 @@ fn a_rock_below_open_skin_stays_below_it() {
                     let (rock, _) = scene.drop(shape.clone(), Vector::new(0.1, -0.8, 0.2));
                     (scene, rock)
                 });
-                let still = lifted(1, |_| 0.0);
                 for tick in 0..200 {
                     let [bits, wanted] = [0, 1].map(|index| {
                         let (scene, rock) = &mut scenes[index];
                         if index == 0 {
                             forget(scene);
                         }
-                        let report = scene.tick(&still, Similarity::IDENTITY);
+                        let report = scene.tick(&rest(), Similarity::IDENTITY);
                         assert_eq!(report.enclosed, 0, "{case}, tick {tick}");
                         let body = &scene.world.bodies[*rock];
                         (*body.position(), body.linvel())

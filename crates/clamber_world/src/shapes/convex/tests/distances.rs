@@ -20,21 +20,13 @@ fn nearest_points_agree_with_a_search_and_a_plane_separates_the_two() {
             };
             apart += 1;
             let distance = found.distance;
-            assert!(
-                (distance - expected).abs() < 2e-7,
-                "{name} {round} {ends:?}: {found:?} for {expected}"
-            );
+            let told = format!("{name} {round} {ends:?}: {found:?}");
+            assert!((distance - expected).abs() < 2e-7, "{told} for {expected}");
             // A plane separates the two.
             let gap = ends.map(|end| end.dot(found.normal) - convex.extent(found.normal));
             let gap = gap[0].min(gap[1]);
-            assert!(
-                gap > distance - 1e-7,
-                "{name} {round} {ends:?}: {gap} {found:?}"
-            );
-            assert!(
-                (found.normal.length() - 1.0).abs() < 1e-12,
-                "{name} {found:?}"
-            );
+            assert!(gap > distance - 1e-7, "{told}: {gap}");
+            assert!((found.normal.length() - 1.0).abs() < 1e-12, "{told}");
         }
     }
     assert!(apart > 2_000, "{apart}");
@@ -54,16 +46,11 @@ fn nearest_points_are_right_from_a_micrometre_to_a_kilometre() {
                 let expected = case.distance(ends);
                 let found = MovingConvex::still(&convex).nearest(0.0, ends, DVec3::ZERO);
                 let distance = found.map_or(0.0, |found| found.distance);
-                assert!(
-                    (distance - expected).abs() < 1e-7 + expected * 1e-7,
-                    "{} {round} {ends:?}: {distance} for {expected}",
-                    case.name
-                );
-                assert!(
-                    (distance - away).abs() < 1e-7 + away * 1e-6,
-                    "{}",
-                    case.name
-                );
+                let told = format!("{} {round} {ends:?}: {distance}", case.name);
+                let off = (distance - expected).abs();
+                assert!(off < 1e-7 + expected * 1e-7, "{told} for {expected}");
+                let off = (distance - away).abs();
+                assert!(off < 1e-7 + away * 1e-6, "{told} for {away}");
             }
         }
     }
@@ -116,14 +103,10 @@ fn above_a_face_of_a_cuboid_nearest_points_are_those_of_a_hull_of_its_corners() 
                 met += 1;
                 continue;
             };
-            assert!(
-                (own.distance - other.distance).abs() < 1e-9,
-                "{round}: {nearest:?}"
-            );
-            assert!(
-                (own.normal - other.normal).length() < 1e-4,
-                "{round}: {nearest:?}"
-            );
+            let off = (own.distance - other.distance).abs();
+            assert!(off < 1e-9, "{round}: {nearest:?}");
+            let off = (own.normal - other.normal).length();
+            assert!(off < 1e-4, "{round}: {nearest:?}");
             let inside = own.on_core.abs().cmple(half.as_dvec3() + 1e-12);
             assert!(inside.all(), "{round}: {own:?}");
             let is_axis = own.normal.abs().max_element() == 1.0;

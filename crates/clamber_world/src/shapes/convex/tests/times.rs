@@ -39,10 +39,8 @@ fn contacts_are_never_late_and_within_the_tolerance() {
             let (mut time, fastest) = (0.0, speed(&path));
             while time < until {
                 let gap = case.distance(path.at(time)) - reach;
-                assert!(
-                    gap > -2e-7,
-                    "{name} {round} {path:?}: {gap} at {time}, before {until}"
-                );
+                let told = format_args!("{name} {round} {path:?}: {gap} at {time}");
+                assert!(gap > -2e-7, "{told}, before {until}");
                 time += (gap / fastest).max(1e-3);
             }
             let Some(touch) = touch else {
@@ -51,10 +49,8 @@ fn contacts_are_never_late_and_within_the_tolerance() {
             };
             assert!(!touch.undecided, "{name} {round} {path:?}");
             let gap = case.distance(path.at(touch.time)) - reach;
-            assert!(
-                gap < TOLERANCE + 2e-7,
-                "{name} {round} {path:?}: {gap} at {until}"
-            );
+            let most = TOLERANCE + 2e-7;
+            assert!(gap < most, "{name} {round} {path:?}: {gap} at {until}");
             met += 1;
             inside += u32::from(touch.time == 0.0);
         }
@@ -74,27 +70,19 @@ fn speed(path: &MovingCapsule) -> f64 {
 fn sliding_along_a_side_and_leaving_are_no_contacts() {
     let side = SharedShape::cuboid(50.0, 1.0, 1.0);
     let convex = Convex::new(&*side).unwrap();
-    let along = |height: f64, by: DVec3| {
+    for (height, by, time, case) in [
+        (1.501, DVec3::X * 80.0, None, "beside"),
+        (1.500_01, DVec3::X * 80.0, None, "within the tolerance"),
+        (1.500_01, DVec3::Y, None, "leaving from within"),
+        (1.500_01, DVec3::ZERO, None, "still"),
+        (1.500_01, DVec3::NEG_Y, Some(0.0), "coming from within"),
+        (1.499, DVec3::Y, Some(0.0), "leaving from inside"),
+        (1.499, DVec3::ZERO, Some(0.0), "still, inside"),
+    ] {
         let path = MovingCapsule::ball(DVec3::new(-40.0, height, 0.0), by, 0.5);
-        MovingConvex::still(&convex)
-            .first_contact(&path, TOLERANCE, 1.0)
-            .map(|touch| touch.time)
-    };
-    assert_eq!(along(1.501, DVec3::X * 80.0), None, "beside");
-    assert_eq!(
-        along(1.500_01, DVec3::X * 80.0),
-        None,
-        "within the tolerance"
-    );
-    assert_eq!(along(1.500_01, DVec3::Y), None, "leaving from within");
-    assert_eq!(along(1.500_01, DVec3::ZERO), None, "still");
-    assert_eq!(
-        along(1.500_01, DVec3::NEG_Y),
-        Some(0.0),
-        "coming from within"
-    );
-    assert_eq!(along(1.499, DVec3::Y), Some(0.0), "leaving from inside");
-    assert_eq!(along(1.499, DVec3::ZERO), Some(0.0), "still, inside");
+        let touch = MovingConvex::still(&convex).first_contact(&path, TOLERANCE, 1.0);
+        assert_eq!(touch.map(|touch| touch.time), time, "{case}");
+    }
 }
 
 #[test]
@@ -151,20 +139,15 @@ fn contacts_of_turning_solids_are_never_late() {
                 let extent = moving.point(time, moving.support(time, normal)).dot(normal);
                 let parted = ends[0].min(ends[1]) - extent;
                 let distance = nearest.distance;
-                assert!(
-                    (parted - distance).abs() < 1e-7,
-                    "{input:?} {time}: {parted} {nearest:?}"
-                );
+                let off = (parted - distance).abs();
+                assert!(off < 1e-7, "{input:?} {time}: {parted} {nearest:?}");
                 distance - reach
             };
             let steps = if until > 0.0 { 300 } else { 0 };
             for step in 0..steps {
                 let time = until * f64::from(step) / 300.0;
-                assert!(
-                    gap(time) > -2e-7,
-                    "{input:?}: {} at {time}, before {until}",
-                    gap(time)
-                );
+                let gap = gap(time);
+                assert!(gap > -2e-7, "{input:?}: {gap} at {time}, before {until}");
             }
             let Some(touch) = touch else {
                 missed += 1;
@@ -172,10 +155,8 @@ fn contacts_of_turning_solids_are_never_late() {
             };
             met += 1;
             undecided += u32::from(touch.undecided);
-            assert!(
-                touch.undecided || gap(until) < TOLERANCE + 1e-7,
-                "{input:?}: {until}"
-            );
+            let is_near = touch.undecided || gap(until) < TOLERANCE + 1e-7;
+            assert!(is_near, "{input:?}: {until}");
         }
     }
     assert!(

@@ -1,15 +1,19 @@
 //! A bot climbs many models to the highest place that their graphs call reachable.
 //!
-//! `cargo run --release --example climbs -- --help` lists the options. One climb is `clamber_scenes::climbs::climb_by`.
+//! `cargo run --release --example climbs -- --help` lists the options. `bot.rs` makes one climb.
+
+mod bot;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clamber::climber::ClimberConfig;
-use clamber_scenes::climbs::{ClimbOptions, Climbed, climb_by};
+use clamber_scenes::measure::checked;
 use clamber_scenes::{Creature, test_data};
 use clap::Parser;
+
+use bot::{ClimbOptions, Climbed, climb_by};
 
 /// Least share of the models that the bot has to climb: 20 of 27.
 const ENOUGH: f64 = 0.74;
@@ -30,14 +34,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(Options::parse()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
-        Err(error) => {
-            eprintln!("climbs: {error}");
-            ExitCode::from(2)
-        }
-    }
+    checked("climbs", run(Options::parse()))
 }
 
 /// Climbs all models and prints the table; true if the bot came to the top of enough models.

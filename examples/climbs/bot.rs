@@ -3,18 +3,19 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use clamber_climber::{
+use clamber::climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ContactQuery, StepRules,
 };
+use clamber::mesh::VertexId;
+use clamber::rig::Palette;
+use clamber::world::{HalfSpace, Obstacle, ObstacleId};
 use clamber_navigation::{
     Bot, BotConfig, ClimbGraph, Danger, Footing, Forecast, FutureSkin, Goal, View,
 };
-use clamber_surface::rig::Palette;
-use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use clamber_scenes::Creature;
+use clamber_scenes::battle::positive;
+use clamber_scenes::climbs::{Motion, Stage};
 use glam::DVec3;
-
-use super::{Motion, Stage};
-use crate::Creature;
 
 /// How far the bot looks ahead for shakes, and in which steps, seconds.
 const LOOKS: f64 = 0.5;
@@ -25,68 +26,56 @@ const CREATURE: ObstacleId = ObstacleId(1);
 
 /// The conditions of a climb.
 #[derive(Clone, Debug, clap::Args)]
-pub struct ClimbOptions {
+pub(crate) struct ClimbOptions {
     /// Height of every creature.
     #[arg(long, value_name = "METRES", default_value_t = 20.0)]
-    #[arg(value_parser = crate::battle::positive, allow_negative_numbers = true)]
-    pub height: f64,
+    #[arg(value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) height: f64,
 
     /// Time that the bot has.
     #[arg(long, value_name = "SECONDS", default_value_t = 120.0)]
-    #[arg(value_parser = crate::battle::positive, allow_negative_numbers = true)]
-    pub seconds: f64,
+    #[arg(value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) seconds: f64,
 
     /// Ticks a second.
     #[arg(long, value_name = "HERTZ", default_value_t = 60.0)]
-    #[arg(value_parser = crate::battle::positive, allow_negative_numbers = true)]
-    pub rate: f64,
+    #[arg(value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) rate: f64,
 
     /// Each model idles and walks by turns, 30 s each, slowed by Froude's law to its height; with neither it plays what
     /// else it has [default: it stands at rest].
     #[arg(long)]
-    pub moving: bool,
+    pub(crate) moving: bool,
 
     /// The bot is told what the model is about to do.
     #[arg(long, requires = "moving")]
-    pub forecast: bool,
-}
-
-impl Default for ClimbOptions {
-    fn default() -> Self {
-        Self {
-            height: 20.0,
-            seconds: 120.0,
-            rate: 60.0,
-            moving: false,
-            forecast: false,
-        }
-    }
+    pub(crate) forecast: bool,
 }
 
 /// How a climb went.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Climbed {
+pub(crate) struct Climbed {
     /// Number of patches of the graph.
-    pub patches: usize,
+    pub(crate) patches: usize,
     /// Share of the skin that is reachable with the strength that a bot counts on.
-    pub reachable: f64,
+    pub(crate) reachable: f64,
     /// Height of the highest place that is reachable with that, above the ground, metres; 0 if there is none.
-    pub top: f64,
+    pub(crate) top: f64,
     /// The least time from the ground to there, seconds.
-    pub least: f64,
+    pub(crate) least: f64,
     /// When the bot got on, and when it came there, seconds.
-    pub times: [Option<f64>; 2],
+    pub(crate) times: [Option<f64>; 2],
     /// How high it came, metres.
-    pub highest: f64,
+    pub(crate) highest: f64,
     /// How often its plan was changed.
-    pub plans: u64,
+    pub(crate) plans: u64,
     /// How often it lost its hold.
-    pub falls: u32,
+    pub(crate) falls: u32,
 }
 
 impl Climbed {
     /// How many times the least time from the ground it took after it had got on; `None` if it did not come there.
-    pub fn ratio(&self) -> Option<f64> {
+    pub(crate) fn ratio(&self) -> Option<f64> {
         let [on, there] = self.times;
         Some((there? - on?) / self.least)
     }
@@ -94,10 +83,7 @@ impl Climbed {
 
 /// A bot climbs a creature, from the ground to the highest place that the graph calls reachable with its strength. All
 /// skin can be gripped.
-///
-/// # Errors
-/// If the creature cannot be posed or divided into a graph, or the climber's numbers are out of range.
-pub fn climb_by(
+pub(crate) fn climb_by(
     config: ClimberConfig,
     creature: &Creature,
     options: &ClimbOptions,
@@ -108,8 +94,8 @@ pub fn climb_by(
         Motion::Still
     };
     let mut stage = Stage::new(creature, (options.height, 1.0), motion)?;
-    let graph = creature.graph(&config, options.height, stage.moves.rate, &[])?;
-    let (mut climbed, goal) = asked(&graph, stage.ground, creature.area(options.height));
+    let graph = creature.graph(&config, options.height, stage.rate(), &[])?;
+    let (mut climbed, goal) = asked(&graph, stage.ground, area(creature, options.height)?);
     let Some((goal, first)) = goal else {
         return Ok(climbed);
     };
@@ -160,6 +146,17 @@ pub fn climb_by(
         climbed.falls += step(&stage, &mut climber, &input, tick)?;
     }
     Ok(climbed)
+}
+
+/// Area of a creature's skin at rest when it is so many metres tall, square metres.
+fn area(creature: &Creature, height: f64) -> Result<f64, Box<dyn Error>> {
+    let (place, _) = creature.standing(height)?;
+    let rest = creature.at_rest()?;
+    let area = |corners: &[VertexId; 3]| {
+        let [a, b, c] = corners.map(|vertex| rest[vertex.index()].as_dvec3() * place.scale);
+        0.5 * (b - a).cross(c - a).length()
+    };
+    Ok(creature.rig.collider.triangles().iter().map(area).sum())
 }
 
 /// The graph's figures for a climb to the highest reachable patch, the goal there, and the entry with the shortest way;
