@@ -213,7 +213,7 @@ fn climb(
         Bound::Most(1.0),
     );
     cells.value("bot / climber, means, with its plans", means[0] / means[1]);
-    cells.value("plans", bot.plans() as f64);
+    cells.value("plans", bot.plan_count() as f64);
     Ok(())
 }
 
@@ -228,7 +228,7 @@ fn predictions(creature: &Creature, count: usize, cells: &mut Cells) -> Result<(
         Some(place)
     };
     let mut surface = SkinnedSurface::new(Arc::clone(&creature.rig.collider));
-    surface.place(&creature.rest_palette()?, place)?;
+    surface.teleport(&creature.rest_palette()?, place)?;
     let mut skin = FutureSkin::new(Arc::clone(&creature.rig.collider));
     let mut climber = Climber::new(
         ClimberConfig::colossus_climber(),

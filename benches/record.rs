@@ -134,6 +134,7 @@ fn writer_us(
         recorder.tick(&TickView {
             tick,
             input: &battle.input,
+            knockback: None,
             state: battle.climber().state(),
             report: battle.report(),
             surface: battle.surface(),

@@ -47,7 +47,7 @@ fn measure(criterion: &mut Criterion, creature: &Creature) -> Result<(), Box<dyn
     // One second of the walk, tick by tick.
     let poses = (0..60).map(|tick| creature.palette("walk", f64::from(tick) / 60.0));
     let poses = poses.collect::<Result<Vec<_>, _>>()?;
-    surface.place(&poses[0], Similarity::IDENTITY)?;
+    surface.teleport(&poses[0], Similarity::IDENTITY)?;
     let mut group = criterion.benchmark_group(format!("giant, {}", mesh.positions().len()));
 
     let mut turn = poses.iter().cycle();

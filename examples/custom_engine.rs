@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         joint_count: 2,
         ..MeshSource::default()
     };
-    let (mesh, _report) = ColliderMesh::build(&source, &BuildOptions::default())?;
+    let (mesh, _report) = ColliderMesh::build(&source, &ColliderBuildOptions::default())?;
     let mut raft = SkinnedSurface::new(mesh.into());
     let mut climber = Climber::new(ClimberConfig::default(), DVec3::new(0.5, 0.9, 0.0))?;
 

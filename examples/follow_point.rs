@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let pose = shake.sample(&creature.skeleton.rest_pose(), time, Playback::Loop)?;
         let palette = creature.skeleton.palette(&pose)?;
         if tick == 0 {
-            surface.place(&palette, far_away)?; // no motion from the rest pose to the first one
+            surface.teleport(&palette, far_away)?; // no motion from the rest pose to the first one
         } else {
             surface.advance(&palette, far_away)?;
         }

@@ -173,7 +173,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             .palette(&clip.sample(&rest, time, Playback::Loop)?)?;
         let place = Similarity::from_translation(pace * time);
         match tick {
-            0 => skin.place(&palette, place)?,
+            0 => skin.teleport(&palette, place)?,
             _ => skin.advance(&palette, place)?,
         }
         let (walk, jumps) = match tick {

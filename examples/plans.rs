@@ -82,7 +82,7 @@ fn main() -> Result<(), Failure> {
         climber.step_with(&input, &around, &rules, TICK)?;
     }
     let arrived = arrived.ok_or("it did not come there within two minutes")?;
-    println!("on top after {arrived:.1} s, {} plans", bot.plans());
+    println!("on top after {arrived:.1} s, {} plans", bot.plan_count());
 
     // Predicts the ride if the giant began to shake now.
     let mut shaking = |seconds: f64, palette: &mut Palette| {

@@ -6,7 +6,10 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clamber_scenes::battle::{Battle, BattleOptions, Check, SceneError, Watch, positive};
+use clamber_scenes::battle::{
+    Battle, BattleOptions, Check, DRIFT, FALLS, INSIDE, PUSHED_OFF, ROCKS_INSIDE, STANDS_OFF,
+    SceneError, Watch, positive,
+};
 use clamber_scenes::measure::checked;
 use clamber_scenes::{Creature, test_data};
 use clap::Parser;
@@ -100,12 +103,12 @@ fn ride(file: &Path, options: &Options) -> Result<(String, Vec<Check>), SceneErr
         "{:.1} % | {:.1} % | {} | {:.4} | {:.1} | {:.1} | {} | {} | {}",
         watch.riding_share() * 100.0,
         standing as f64 / watch.ticks().max(1) as f64 * 100.0,
-        watch.falls,
-        watch.drift * 1e3,
-        watch.pushed_off * 1e3,
-        watch.stands_off * 1e3,
-        watch.inside,
-        watch.rocks_inside,
+        watch.found(FALLS),
+        watch.found(DRIFT) * 1e3,
+        watch.found(PUSHED_OFF) * 1e3,
+        watch.found(STANDS_OFF) * 1e3,
+        watch.found(INSIDE),
+        watch.found(ROCKS_INSIDE),
         battle.rocks.left,
     );
     Ok((cells, checks))

@@ -4,6 +4,8 @@
 
 #[path = "../examples/climbs/bot.rs"]
 mod bot;
+#[path = "../examples/climbs/stage.rs"]
+mod stage;
 
 use bot::{ClimbOptions, Climbed, climb_by};
 use clamber::climber::ClimberConfig;

@@ -144,7 +144,7 @@ fn loops_close_and_no_clip_sinks_into_the_ground() {
         });
         if ["idle", "walk", "shake"].contains(&clip.name.as_str()) {
             let mut at = |palette| {
-                surface.place(palette, Similarity::IDENTITY).unwrap();
+                surface.teleport(palette, Similarity::IDENTITY).unwrap();
                 positions_of(&surface)
             };
             let (first, last) = (at(&ends[0]), at(&ends[1]));

@@ -146,7 +146,7 @@ fn at_rest_a_man_stands_upright() {
     let model = load(&path).unwrap();
     let palette = rest_palette(&model);
     let mut surface = SkinnedSurface::new(model.rig.collider.clone());
-    surface.place(&palette, Similarity::IDENTITY).unwrap();
+    surface.teleport(&palette, Similarity::IDENTITY).unwrap();
     let mut positions = Vec::new();
     surface.skin_all(&mut positions);
     let (low, high) = positions

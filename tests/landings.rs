@@ -72,7 +72,7 @@ fn landings_are_foreseen_on_moving_skin() {
         let mut surface = SkinnedSurface::new(Arc::clone(&creature.rig.collider));
         let mut palette = Palette::default();
         pose(0.0, &mut palette).unwrap();
-        surface.place(&palette, place).unwrap();
+        surface.teleport(&palette, place).unwrap();
         let mut is = None;
         for tick in 1..=360 {
             let seconds = f64::from(tick) * TICK;

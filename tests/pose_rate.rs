@@ -123,7 +123,7 @@ fn ride(rig: &Rig, place: &Place, rhythm: Rhythm, scene: Scene) -> Ride {
     let mut giant = SkinnedSurface::new(rig.collider.clone());
     let (pose, world) = posed(0.0);
     let mut palette = rig.skeleton.palette(&pose).unwrap();
-    giant.place(&palette, world).unwrap();
+    giant.teleport(&palette, world).unwrap();
     let from = place.from * size;
     let hit = giant.in_world().cast_ray(from, place.along, 100.0 * size);
     let begin = giant.anchor_at(&hit.unwrap()).unwrap();
@@ -156,7 +156,7 @@ fn ride(rig: &Rig, place: &Place, rhythm: Rhythm, scene: Scene) -> Ride {
                 .unwrap();
             match motion {
                 PoseMotion::Moved => giant.advance(&palette, world).unwrap(),
-                PoseMotion::Placed => giant.place(&palette, world).unwrap(),
+                PoseMotion::Teleported => giant.teleport(&palette, world).unwrap(),
             }
         } else {
             let mut world = *giant.world_from_model();

@@ -180,7 +180,7 @@ fn block(half: Vec3) -> SkinnedSurface {
     ];
     let triangles = faces.map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).concat();
     let source = MeshSource::rigid(&positions, &triangles);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }
 
@@ -193,7 +193,7 @@ fn going_along_a_ledge_that_moves_allocates_nothing() {
         let share = f64::from(tick % 150) / 75.0 - 1.0;
         Similarity::from_translation(DVec3::new(1.0, 0.4, 0.0) * (share * share))
     };
-    block.place(&rest, place(0)).unwrap();
+    block.teleport(&rest, place(0)).unwrap();
     let mut config = ClimberConfig::colossus_climber();
     // Without grips, the climber only hangs from ledges.
     config.grip = None;

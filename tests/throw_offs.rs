@@ -142,7 +142,7 @@ fn b59_throw_offs_are_foreseen() {
         let mut surface = SkinnedSurface::new(Arc::clone(&creature.rig.collider));
         let mut palette = Palette::default();
         play.pose(0.0, &mut palette).unwrap();
-        surface.place(&palette, place).unwrap();
+        surface.teleport(&palette, place).unwrap();
         let Some(mut climber) = mount(&mut rng, &surface) else {
             continue;
         };

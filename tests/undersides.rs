@@ -57,7 +57,7 @@ fn ride(rig: &Rig, clip: &str, rng: &mut fastrand::Rng, seen: &mut Seen) {
     let root = clamber::geometry::Similarity::IDENTITY;
     let mut giant = SkinnedSurface::new(rig.collider.clone());
     let start = rng.f64() * 5.0;
-    giant.place(&pose(rig, clip, start), root).unwrap();
+    giant.teleport(&pose(rig, clip, start), root).unwrap();
     // Casts rays straight up, until one hits fur that faces down.
     let (low, high) = (DVec3::new(-7.0, -1.0, -7.0), DVec3::new(7.0, -1.0, 7.0));
     let contact = loop {

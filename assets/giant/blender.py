@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from . import clips, nets, shell, visual
+from . import clips, nets, visual
 from .signs import SIGNS
 from .skeleton import JOINTS
 from .turns import quaternions
@@ -45,7 +45,7 @@ def thinned(mesh, share):
 def materials():
     """All materials, with their tags."""
     made = []
-    for name, (surface, colour, roughness, glow) in visual.MATERIALS.items():
+    for name, (surface, user, colour, roughness, glow) in visual.MATERIALS.items():
         material = bpy.data.materials.new(name)
         material.use_nodes = True
         shader = material.node_tree.nodes["Principled BSDF"]
@@ -55,9 +55,7 @@ def materials():
         if glow:
             shader.inputs["Emission"].default_value = (*glow, 1.0)
             shader.inputs["Emission Strength"].default_value = 1.0
-        material["clamber"] = {"surface": surface}
-        if name == "shell":
-            material["clamber"]["user"] = shell.USER
+        material["clamber"] = {"surface": surface, "user": user} if user else {"surface": surface}
         made.append(material)
     return made
 

@@ -23,14 +23,17 @@ VOID_DEPTH = 0.45
 # One repeat of a texture covers this many metres.
 UV_METRES = 4.0
 
-# name: (surface, base colour, roughness, glow)
+# The number of stone with a level top, for games that want to find ledges.
+LEDGE_USER = 2
+
+# name: (surface, number for the game, base colour, roughness, glow)
 MATERIALS = {
-    "fur": ("fur", (0.085, 0.060, 0.043), 0.95, None),
-    "hide": ("skin", (0.20, 0.155, 0.125), 0.8, None),
-    "stone": ("stone", (0.37, 0.345, 0.30), 0.9, None),
-    "stone_ledge": ("stone", (0.43, 0.41, 0.345), 0.9, None),
-    "shell": ("stone", (0.30, 0.36, 0.37), 0.7, None),
-    "glow": ("stone", (0.25, 0.85, 0.90), 0.4, (0.15, 0.95, 1.0)),
+    "fur": ("fur", None, (0.085, 0.060, 0.043), 0.95, None),
+    "hide": ("skin", None, (0.20, 0.155, 0.125), 0.8, None),
+    "stone": ("stone", None, (0.37, 0.345, 0.30), 0.9, None),
+    "stone_ledge": ("stone", LEDGE_USER, (0.43, 0.41, 0.345), 0.9, None),
+    "shell": ("stone", shell.USER, (0.30, 0.36, 0.37), 0.7, None),
+    "glow": ("stone", None, (0.25, 0.85, 0.90), 0.4, (0.15, 0.95, 1.0)),
 }
 NAMES = list(MATERIALS)
 

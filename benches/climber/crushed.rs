@@ -64,7 +64,7 @@ fn row(
                 };
                 let rest = Palette::from_matrices([Affine::IDENTITY]);
                 if tick == 0 {
-                    wall.place(&rest, place)?;
+                    wall.teleport(&rest, place)?;
                 } else {
                     wall.advance(&rest, place)?;
                 }
@@ -124,5 +124,5 @@ fn wall() -> Result<ColliderMesh, Box<dyn Error>> {
         }
     }
     let source = MeshSource::rigid(&positions, &triangles);
-    Ok(ColliderMesh::build(&source, &BuildOptions::default())?.0)
+    Ok(ColliderMesh::build(&source, &ColliderBuildOptions::default())?.0)
 }

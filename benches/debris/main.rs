@@ -67,12 +67,16 @@ fn measure(size: Option<usize>, brief: bool, cells: &mut Cells) -> Result<(), Bo
         let start = Instant::now();
         let since = |start: Instant| start.elapsed().as_secs_f64() * 1e6;
         ours.pose()?;
-        let skin = (CREATURE, &ours.surface);
-        ours.rocks.before_step(skin, &mut ours.world, TICK)?;
+        let skin = [(CREATURE, &ours.surface)];
+        let (debris, world) = (&mut ours.rocks.debris, &mut ours.world);
+        debris.before_step(&skin, &mut world.bodies, &mut world.colliders, TICK)?;
         let brought = since(start);
-        ours.world.step_with_events(&ours.rocks.debris, &());
+        world.step_with_events(&*debris, &());
         let stepped = since(start);
-        let report = ours.rocks.after_step(skin, &mut ours.world, TICK)?;
+        let (broad_phase, narrow_phase) = (&world.broad_phase, &world.narrow_phase);
+        let (bodies, colliders) = (&mut world.bodies, &world.colliders);
+        let report =
+            debris.after_step(&skin, bodies, colliders, broad_phase, narrow_phase, TICK)?;
         let by_patches = since(start);
         let start = Instant::now();
         let skin = whole.step()?;

@@ -145,10 +145,10 @@ impl<'a> Scene<'a> {
     }
 
     fn pose(&mut self, tick: usize, awake: Range<usize>) -> Result<(), Box<dyn Error>> {
-        self.herd.pose(tick, awake.clone())?;
-        if self.skinning == Skinning::Everything {
-            for giant in &mut self.herd.giants[awake] {
-                giant.surface.skin_ahead();
+        for giant in awake {
+            self.herd.pose(tick, giant..giant + 1)?;
+            if self.skinning == Skinning::Everything {
+                self.herd.giants[giant].surface.skin_ahead();
             }
         }
         Ok(())

@@ -43,7 +43,7 @@ impl Field {
         let palette = |seconds: f64| creature.palette("walk", seconds);
         let palettes = [palette(0.5)?, palette(0.5 + 1.0 / 60.0)?];
         let mut surface = SkinnedSurface::new(creature.rig.collider.clone());
-        surface.place(&palettes[0], Similarity::IDENTITY)?;
+        surface.teleport(&palettes[0], Similarity::IDENTITY)?;
         surface.advance(&palettes[1], Similarity::IDENTITY)?;
         Ok(Self {
             parry: Parry::new(&surface)?,
@@ -94,7 +94,7 @@ impl Field {
     /// Starts a new tick, in which no vertex is skinned and no bound computed yet.
     fn renew(&mut self) -> Result<(), Box<dyn Error>> {
         self.surface
-            .place(&self.palettes[0], Similarity::IDENTITY)?;
+            .teleport(&self.palettes[0], Similarity::IDENTITY)?;
         self.surface
             .advance(&self.palettes[1], Similarity::IDENTITY)?;
         Ok(())

@@ -166,7 +166,7 @@ fn posed(sheet: &Sheet) -> Result<SkinnedSurface, Box<dyn Error>> {
         joint_count: vertices as usize,
         ..MeshSource::default()
     };
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
+    let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default())?;
     let palette = |end: usize| {
         Palette::from_matrices(sheet[end].iter().map(|p| Affine {
             rows: [
@@ -177,7 +177,7 @@ fn posed(sheet: &Sheet) -> Result<SkinnedSurface, Box<dyn Error>> {
         }))
     };
     let mut surface = SkinnedSurface::new(Arc::new(mesh));
-    surface.place(&palette(0), Similarity::IDENTITY)?;
+    surface.teleport(&palette(0), Similarity::IDENTITY)?;
     surface.advance(&palette(1), Similarity::IDENTITY)?;
     Ok(surface)
 }

@@ -59,7 +59,7 @@ impl Sheet {
             joint_count: JOINTS,
             ..MeshSource::default()
         };
-        let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
+        let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default())?;
         let matrix = |k: usize| {
             let turn = DQuat::from_xyzw(0.0, 0.0, 0.1 * k as f64, 1.0).normalize();
             Affine::from_f64(&DAffine3::from_rotation_translation(

@@ -18,6 +18,7 @@ use std::process::ExitCode;
 use clamber_scenes::battle::{Battle, TICK, Watch};
 use clamber_scenes::measure::checked;
 use options::Options;
+use report::Sums;
 
 type Failure = Box<dyn Error>;
 
@@ -52,7 +53,7 @@ fn run(options: &Options) -> Result<bool, Failure> {
     }
     let creature = settings.load_creature()?;
     let mut battle = Battle::new(&creature, settings)?;
-    let mut watch = Watch::default();
+    let (mut watch, mut sums) = (Watch::default(), Sums::default());
     if let Some(file) = file {
         cameras.push(recorder(file, &battle, options)?);
     }
@@ -60,6 +61,7 @@ fn run(options: &Options) -> Result<bool, Failure> {
         if tick > 0 {
             battle.step(settings.input_at(tick - 1))?;
             watch.tick(&battle);
+            sums.add(&battle);
         }
         for camera in &mut cameras {
             camera.watch(&battle)?;
@@ -75,7 +77,7 @@ fn run(options: &Options) -> Result<bool, Failure> {
     }
     let checks = watch.checks(&battle, settings);
     report::write(&battle, &checks, empty(summary)?)?;
-    print!("{}", report::table(&battle, &watch, &checks));
+    print!("{}", report::table(&battle, &watch, &sums, &checks));
     Ok(checks.iter().all(|check| check.holds()))
 }
 

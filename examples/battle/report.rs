@@ -7,8 +7,34 @@ use serde_json::json;
 
 use crate::Failure;
 
+/// What the table shows, summed over all ticks of a battle.
+#[derive(Default)]
+pub(crate) struct Sums {
+    /// Shares of the creature's vertices that were skinned for the climber.
+    skinned: f64,
+    /// Rocks with skin near them.
+    near: u64,
+    /// Rocks that were put back in front of the skin.
+    put_back: u32,
+}
+
+impl Sums {
+    /// Adds a battle's last tick.
+    pub(crate) fn add(&mut self, battle: &Battle<'_>) {
+        self.skinned += skinned_share(battle);
+        self.near += u64::from(battle.rocks.report.near);
+        self.put_back += battle.rocks.report.put_back;
+    }
+}
+
+/// The share of the creature's vertices that were skinned for the climber in the last tick.
+pub(crate) fn skinned_share(battle: &Battle<'_>) -> f64 {
+    let skinned = &battle.skinned;
+    skinned.vertices_skinned as f64 / skinned.vertices.max(1) as f64
+}
+
 /// The results of a battle as a table.
-pub(crate) fn table(battle: &Battle<'_>, watch: &Watch, checks: &[Check]) -> String {
+pub(crate) fn table(battle: &Battle<'_>, watch: &Watch, sums: &Sums, checks: &[Check]) -> String {
     let (mesh, counts, rocks) = (battle.surface().mesh(), &battle.counts, &battle.rocks);
     let time_us = |part: usize, share: f64| {
         let mut times: Vec<f64> = battle.times.iter().map(|times| times[part]).collect();
@@ -65,15 +91,15 @@ pub(crate) fn table(battle: &Battle<'_>, watch: &Watch, checks: &[Check]) -> Str
   rocks, drops, near the skin {}, {}, {:.1}; {} left the valley
   rocks with physics, median  {:.0} us, {} put back
   hash                        {:016x}\n",
-        watch.skinned_share() * 100.0,
+        sums.skinned / ticks * 100.0,
         time_us(0, 0.5),
         time_us(0, 0.99),
         rocks.bodies().len(),
         rocks.drops,
-        rocks.near as f64 / ticks,
+        sums.near as f64 / ticks,
         rocks.left,
         time_us(1, 0.5),
-        rocks.put_back,
+        sums.put_back,
         battle.hash(),
     );
     checks

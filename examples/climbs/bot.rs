@@ -14,8 +14,9 @@ use clamber_navigation::{
 };
 use clamber_scenes::Creature;
 use clamber_scenes::battle::positive;
-use clamber_scenes::climbs::{Motion, Stage};
 use glam::DVec3;
+
+use crate::stage::Stage;
 
 /// How far the bot looks ahead for shakes, and in which steps, seconds.
 const LOOKS: f64 = 0.5;
@@ -88,13 +89,8 @@ pub(crate) fn climb_by(
     creature: &Creature,
     options: &ClimbOptions,
 ) -> Result<Climbed, Box<dyn Error>> {
-    let motion = if options.moving {
-        Motion::Turns
-    } else {
-        Motion::Still
-    };
-    let mut stage = Stage::new(creature, (options.height, 1.0), motion)?;
-    let graph = creature.graph(&config, options.height, stage.rate(), &[])?;
+    let mut stage = Stage::new(creature, options.height, options.moving)?;
+    let graph = creature.graph(&config, options.height, stage.rate, &[])?;
     let (mut climbed, goal) = asked(&graph, stage.ground, area(creature, options.height)?);
     let Some((goal, first)) = goal else {
         return Ok(climbed);
@@ -111,9 +107,8 @@ pub(crate) fn climb_by(
             Forecast::still()
         };
         let mut ahead = |later: f64, palette: &mut Palette| {
-            let (posed, place) = stage.pose(seconds + later).ok()?;
-            *palette = posed;
-            Some(place)
+            *palette = stage.palette(seconds + later).ok()?;
+            Some(stage.place)
         };
         let shake_ahead = if options.moving {
             future.shake_ahead(&climber, CREATURE, &mut ahead, AHEAD, LOOKS)?
@@ -124,7 +119,7 @@ pub(crate) fn climb_by(
             seconds,
             climber: &climber,
             creature: CREATURE,
-            surface: stage.surface(),
+            surface: &stage.surface,
             goal: &goal,
             forecast: &forecast,
             danger: Danger::None,
@@ -139,7 +134,7 @@ pub(crate) fn climb_by(
         let input = bot.input(&view);
         let high = climber.state().position.y - stage.ground;
         climbed.highest = climbed.highest.max(high);
-        climbed.plans = bot.plans();
+        climbed.plans = bot.plan_count();
         if climbed.times[1].is_some() {
             break;
         }
@@ -205,7 +200,7 @@ fn standing(
     let (patch, radius) = (&graph.patches()[entry], config.body.radius);
     let out = (patch.normal * DVec3::new(1.0, 0.0, 1.0)).normalize_or(DVec3::X);
     let level = patch.seat * DVec3::new(1.0, 0.0, 1.0);
-    let surface = stage.surface().in_world();
+    let surface = stage.surface.in_world();
     let room = |away: &f64| {
         let center = level + out * *away + DVec3::Y * (stage.ground + 1.1 * radius);
         surface.closest_point(center, 1.5 * radius).is_none()
@@ -226,7 +221,7 @@ fn step(
 ) -> Result<u32, Box<dyn Error>> {
     let floor = HalfSpace::below(stage.ground);
     let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
-        [(GROUND, &floor), (CREATURE, stage.surface())];
+        [(GROUND, &floor), (CREATURE, &stage.surface)];
     let rule = |query: &ContactQuery<'_>| query.usual().with_grip(query.id == CREATURE);
     let report = climber.step_with(input, &obstacles, &StepRules::by(&rule), tick)?;
     let lost = |event: &&ClimberEvent| {

@@ -3,6 +3,7 @@
 //! `cargo run --release --example climbs -- --help` lists the options. `bot.rs` makes one climb.
 
 mod bot;
+mod stage;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};

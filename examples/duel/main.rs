@@ -76,10 +76,11 @@ struct Options {
 
 fn main() -> ExitCode {
     let options = Options::parse();
-    exit_code(match (options.player, options.peer) {
+    let ended = match (options.player, options.peer) {
         (Some(player), Some(address)) => over_network(&options, player.into(), address),
         _ => in_one_process(&options),
-    })
+    };
+    exit_code(ended.map_err(|error| format!("duel: {error}").into()))
 }
 
 /// Runs all peers in this process, over a line that delays and loses messages, as fast as possible.

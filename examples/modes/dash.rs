@@ -38,8 +38,8 @@ impl CustomMode for Dash {
     }
 
     fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool {
-        let rest = (context.memory()[REST] - context.dt()).max(0.0);
-        context.memory()[REST] = rest;
+        let rest = (context.custom_slots()[REST] - context.dt()).max(0.0);
+        context.custom_slots()[REST] = rest;
         let input = *context.input();
         let is_free = matches!(
             context.state().mode,
@@ -49,17 +49,17 @@ impl CustomMode for Dash {
             return false;
         }
         context.face(input.walk);
-        context.memory()[LEFT] = self.duration;
+        context.custom_slots()[LEFT] = self.duration;
         true
     }
 
     fn step(&self, context: &mut ModeContext<'_, '_>) -> NextMode {
-        context.memory()[REST] = self.cooldown;
-        if context.input().blow.is_some() {
+        context.custom_slots()[REST] = self.cooldown;
+        if context.knockback().is_some() {
             return context.let_go();
         }
-        let left = context.memory()[LEFT] - context.dt();
-        context.memory()[LEFT] = left.max(0.0);
+        let left = context.custom_slots()[LEFT] - context.dt();
+        context.custom_slots()[LEFT] = left.max(0.0);
         // Half a tick of slack: the duration need not be a whole number of ticks, and sums of ticks are rounded.
         let is_last = left < 0.5 * context.dt();
         let ground = context.config().ground;

@@ -67,7 +67,7 @@ impl CustomMode for Swim {
         context.detach();
         context.set_base_velocity(self.current);
         let depth = self.depth(context.position());
-        let (Some(depth), None) = (depth, input.blow) else {
+        let (Some(depth), None) = (depth, context.knockback()) else {
             return context.fall(velocity);
         };
         if input.jump && depth < ENDS {

@@ -70,16 +70,16 @@ impl CustomMode for Vault {
         // A wall that moves takes the climber with it.
         context.attach(&ledge.touch);
         context.face(ledge.facing);
-        context.memory()[TAKEN] = 0.0;
+        context.custom_slots()[TAKEN] = 0.0;
         true
     }
 
     fn step(&self, context: &mut ModeContext<'_, '_>) -> NextMode {
-        context.memory()[TAKEN] += context.dt();
-        let is_late = context.memory()[TAKEN] > PATIENCE;
+        context.custom_slots()[TAKEN] += context.dt();
+        let is_late = context.custom_slots()[TAKEN] > PATIENCE;
         let (up, heading) = (context.up(), context.state().heading);
         let support = context.state().support;
-        let (Some(wall), None, false) = (support, context.input().blow, is_late) else {
+        let (Some(wall), None, false) = (support, context.knockback(), is_late) else {
             return context.let_go();
         };
         let (body, base) = (context.body(), context.base_velocity());

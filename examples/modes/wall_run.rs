@@ -53,9 +53,9 @@ impl CustomMode for WallRun {
     fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool {
         let (mode, input) = (context.state().mode, *context.input());
         if mode == ClimberMode::Standing {
-            context.memory()[RAN] = 0.0;
+            context.custom_slots()[RAN] = 0.0;
         }
-        let may_run = context.memory()[RAN] + 0.5 * context.dt() < DURATION;
+        let may_run = context.custom_slots()[RAN] + 0.5 * context.dt() < DURATION;
         if mode != ClimberMode::Falling || input.actions & self.action == 0 || !may_run {
             return false;
         }
@@ -70,7 +70,7 @@ impl CustomMode for WallRun {
     fn step(&self, context: &mut ModeContext<'_, '_>) -> NextMode {
         let (input, velocity, dt) = (*context.input(), context.velocity(), context.dt());
         let (heading, up) = (context.state().heading, context.up());
-        let wants = input.actions & self.action != 0 && input.blow.is_none();
+        let wants = input.actions & self.action != 0 && context.knockback().is_none();
         let (Some(wall), true) = (wall_beside(context), wants) else {
             return context.let_go();
         };
@@ -78,8 +78,8 @@ impl CustomMode for WallRun {
             let jump = (wall.normal + up) * context.config().ground.jump_speed;
             return context.fall(velocity + jump);
         }
-        context.memory()[RAN] += dt;
-        let is_last = context.memory()[RAN] + 0.5 * dt > DURATION;
+        context.custom_slots()[RAN] += dt;
+        let is_last = context.custom_slots()[RAN] + 0.5 * dt > DURATION;
         // From now on velocities are relative to the wall, which may move.
         context.attach(&wall);
         let run = along(&wall, heading, up).normalize_or_zero() * SPEED;

@@ -72,7 +72,7 @@ impl<'a> Rocks<'a> {
             time: 0.0,
         };
         scene.advance_pose()?;
-        scene.surface.place(&scene.palette, root)?;
+        scene.surface.teleport(&scene.palette, root)?;
         Ok(scene)
     }
 

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use clamber_peers::{Peer, all, ball};
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::skin::skin_into;
 use clamber_verify::brute_force::{self, Triangles};
@@ -46,7 +46,7 @@ fn bumpy_ball() -> ColliderMesh {
         joint_count: 2,
         ..MeshSource::default()
     };
-    ColliderMesh::build(&source, &BuildOptions::default())
+    ColliderMesh::build(&source, &ColliderBuildOptions::default())
         .unwrap()
         .0
 }

@@ -4,8 +4,8 @@ use clamber::climber::{Climber, ClimberState};
 use clamber::glam::DVec3;
 use clamber::world::Obstacle;
 use clamber_scenes::battle::{
-    Battle, BattleOptions, DRIFT, FALLS, INSIDE, Intent, MAX_DRIFT, MAX_STANDS_OFF, STANDS_OFF,
-    TERRAIN, Watch,
+    Battle, BattleOptions, DRIFT, FALLS, INSIDE, Intent, MAX_DRIFT, MAX_STANDS_OFF, PUSHED_OFF,
+    STANDS_OFF, TERRAIN, Watch,
 };
 use clamber_scenes::giant::giant;
 use clamber_scenes::valley;
@@ -73,8 +73,9 @@ fn a_rider_that_stands_where_it_stood_has_no_fault() {
         let drift = scene.look(state).unwrap();
         assert!(drift < MAX_DRIFT, "drift {drift}");
         let watch = &scene.watch;
-        assert!(watch.stands_off < 1e-4, "stands off {}", watch.stands_off);
-        assert_eq!((watch.pushed_off, watch.falls), (0.0, 0));
+        let off = watch.found(STANDS_OFF);
+        assert!(off < 1e-4, "stands off {off}");
+        assert_eq!((watch.found(PUSHED_OFF), watch.found(FALLS)), (0.0, 0.0));
         assert!(watch.first_fault(DRIFT).is_none());
     });
 }
@@ -119,9 +120,9 @@ fn a_body_that_floats_or_slid_along_open_skin_stands_off_and_is_not_pushed() {
             let mut scene = Scene::new(scene.battle);
             scene.look(moved(state, by));
             let watch = &scene.watch;
-            let off = watch.stands_off;
+            let off = watch.found(STANDS_OFF);
             assert!(off > MAX_STANDS_OFF, "{what}: {off}");
-            assert_eq!(watch.pushed_off, 0.0, "{what}");
+            assert_eq!(watch.found(PUSHED_OFF), 0.0, "{what}");
             assert!(watch.first_fault(STANDS_OFF).is_some(), "{what}");
             assert!(watch.first_fault(DRIFT).is_none(), "{what}");
         }
@@ -139,12 +140,12 @@ fn a_rider_on_the_ground_has_fallen_once_until_it_rides_again() {
         };
         scene.look(down);
         scene.look(down);
-        assert_eq!(scene.watch.falls, 1);
+        assert_eq!(scene.watch.found(FALLS), 1.0);
         let cause = scene.watch.first_fault(FALLS).unwrap();
         assert!(cause.contains("left the creature"), "{cause}");
         scene.look(state);
         scene.look(down);
-        assert_eq!(scene.watch.falls, 2, "fallen again");
+        assert_eq!(scene.watch.found(FALLS), 2.0, "fallen again");
     });
 }
 
@@ -152,10 +153,10 @@ fn a_rider_on_the_ground_has_fallen_once_until_it_rides_again() {
 fn a_rider_below_the_ground_is_a_fault_inside_the_valley_only() {
     stood(|scene, state| {
         scene.look(moved(state, DVec3::Y * -60.0));
-        assert_eq!(scene.watch.inside, 1);
+        assert_eq!(scene.watch.found(INSIDE), 1.0);
         let cause = scene.watch.first_fault(INSIDE).unwrap();
         assert!(cause.contains("below the ground"), "{cause}");
         scene.look(moved(state, DVec3::new(valley::SIZE, -60.0, 0.0)));
-        assert_eq!(scene.watch.inside, 1, "there is no ground outside");
+        assert_eq!(scene.watch.found(INSIDE), 1.0, "there is no ground outside");
     });
 }

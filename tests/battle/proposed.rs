@@ -3,18 +3,12 @@
 use std::path::PathBuf;
 
 use clamber_colossus::BrainFile;
-use clamber_scenes::Creature;
 use clamber_scenes::battle::{Battle, BattleOptions};
+use clamber_scenes::{Creature, test_data};
 
 /// Number of fights that the bot won against an animal, with the seeds from 1 to `seeds`; `None` without the test data.
 fn won(animal: &str, seeds: u64) -> Option<u64> {
-    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
-        eprintln!(
-            "SKIPPED {animal}: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb"
-        );
-        return None;
-    };
-    let path = PathBuf::from(root).join("models").join(animal);
+    let path = test_data::file("fights with animals", &format!("models/{animal}"))?;
     let rig = clamber::gltf::load(&path).unwrap().rig;
     let brain = BrainFile::propose(&rig, 20.0).unwrap();
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{animal}.brain.json"));

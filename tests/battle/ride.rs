@@ -1,6 +1,6 @@
 //! Riding the creature passes the scene's own checks, over long times and under various conditions.
 
-use clamber_scenes::battle::{Battle, BattleOptions, Intent, Watch};
+use clamber_scenes::battle::{Battle, BattleOptions, DRIFT, Intent, PUSH_OUT, Watch};
 use clamber_scenes::giant::giant;
 use clamber_scenes::{Creature, test_data};
 
@@ -27,7 +27,7 @@ fn stand(creature: &Creature, height: f64, seed: u64, seconds: u32) -> Watch {
 fn assert_stood_fast(watch: &Watch, what: &str) {
     let share = watch.drift_ticks as f64 / watch.ticks() as f64;
     assert!(share > 0.95, "{what}: stood for only {share} of the time");
-    let (drift, push_out) = (watch.drift, watch.push_out);
+    let (drift, push_out) = (watch.found(DRIFT), watch.found(PUSH_OUT));
     println!("{what}: drift {drift:.2e} m, push-out {push_out:.2e} m");
     assert!(drift <= 1e-4, "{what}: drift {drift}");
     assert!(push_out < 0.01, "{what}: push-out {push_out}");

@@ -4,7 +4,7 @@ use clamber::climber::{Climber, ClimberState};
 use clamber::glam::DVec3;
 use clamber::world::rapier3d::prelude::Vector;
 use clamber_scenes::battle::{
-    Battle, BattleOptions, CreatureState, FALLS, Intent, ROCKS_INSIDE, Story, TICK, Watch,
+    Battle, BattleOptions, FALLS, Intent, ROCKS_INSIDE, Story, TICK, Watch,
 };
 use clamber_scenes::giant::giant_of;
 use clamber_scenes::{giant, valley};
@@ -63,7 +63,7 @@ fn a_rock_under_the_ground_is_a_fault_and_counts_once() {
             battle.step(Intent::Stand).unwrap();
             watch.tick(battle);
         }
-        assert_eq!((battle.rocks.left, watch.rocks_inside), (0, 1));
+        assert_eq!((battle.rocks.left, watch.found(ROCKS_INSIDE)), (0, 1.0));
         let cause = watch.first_fault(ROCKS_INSIDE).unwrap();
         assert!(cause.contains("rock 0 below the ground"), "{cause}");
     });
@@ -91,7 +91,8 @@ fn a_rider_out_of_the_valley_is_dropped_again_with_the_velocity_of_the_creature_
             let before = battle.surface().world_from_model().translation;
             battle.step(Intent::Stand).unwrap();
             watch.tick(battle);
-            assert_eq!((battle.counts.drops, watch.falls), (falls + 1, falls));
+            let found = (battle.counts.drops, watch.found(FALLS));
+            assert_eq!(found, (falls + 1, f64::from(falls)));
             let state = battle.climber().state();
             let moved = battle.surface().world_from_model().translation - before;
             assert_eq!(state.velocity, moved / TICK);
@@ -141,10 +142,7 @@ fn a_climber_that_dies_or_is_lost_begins_again() {
         }
         assert!(battle.climber().state().position.distance(start.position) > 5.0);
         let mut snapshot = battle.snapshot();
-        let CreatureState::Fights(arena) = &mut snapshot.creature else {
-            panic!("a ride");
-        };
-        arena.fighters[0].state.climber = state;
+        snapshot.arena.as_mut().unwrap().fighters[0].state.climber = state;
         battle.restore(&snapshot, state).unwrap();
         // It lies for a while first, or falls.
         let begins_again = (0..600).any(|_| {

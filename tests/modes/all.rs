@@ -1,7 +1,8 @@
 //! Tests of all modes. [`Scene::step`] also checks that a mode's state can be restored in any tick.
 
 use clamber::climber::{
-    Blow, ClimberError, ClimberInput, ClimberMode, CustomMode, ModeContext, NextMode, StepRules,
+    ClimberError, ClimberInput, ClimberMode, CustomMode, Knockback, ModeContext, NextMode,
+    StepRules,
 };
 use clamber::prelude::Climber;
 use glam::DVec3;
@@ -52,14 +53,12 @@ fn a_blow_ends_every_mode_and_adds_its_velocity() {
         let mut scene = play(DVec3::ZERO);
         assert_eq!(scene.mode(), mode);
         let before = scene.velocity();
-        let blow = Blow {
+        let blow = Knockback {
             velocity: DVec3::new(0.0, 2.0, 3.0),
-            ..Blow::default()
+            ..Knockback::default()
         };
-        scene.step(&ClimberInput {
-            blow: Some(blow),
-            ..ClimberInput::IDLE
-        });
+        scene.knockback = Some(blow);
+        scene.step(&ClimberInput::IDLE);
         let state = scene.climber.state();
         assert_eq!(state.mode, ClimberMode::Falling, "{mode:?}");
         assert!(state.support.is_none(), "{mode:?}");
@@ -115,7 +114,7 @@ impl CustomMode for Feel {
     fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool {
         let ground = context.ground_below(3.0);
         let gap = ground.map_or(-1.0, |ground| ground.position.distance(context.position()));
-        context.memory()[7] = gap;
+        context.custom_slots()[7] = gap;
         false
     }
 
@@ -134,7 +133,7 @@ fn before_its_movement_a_mode_finds_the_ground_where_it_is_at_that_time() {
         for tick in 0..90 {
             let height = scene.position().y - 0.4;
             scene.step(&ClimberInput::IDLE);
-            let felt = scene.climber.state().memory[7];
+            let felt = scene.climber.state().custom_slots[7];
             assert!(
                 (felt - height).abs() < 1e-6,
                 "{frame}, tick {tick}: {felt} {height}"

@@ -1,5 +1,6 @@
 //! A climber among moving boxes and water, in a frame that moves as a whole.
 
+use clamber::climber::Knockback;
 use clamber::climber::{ClimberConfig, ClimberInput, ClimberMode, CustomMode, StepReport};
 use clamber::prelude::{Climber, Obstacle, ObstacleId, StepRules, SurfaceKind};
 use glam::{DQuat, DVec3};
@@ -49,6 +50,8 @@ pub(crate) struct Scene {
     frame: DVec3,
     tick: u32,
     pub(crate) climber: Climber,
+    /// The blow that strikes the climber in the next tick.
+    pub(crate) knockback: Option<Knockback>,
     pub(crate) dash: Dash,
     pub(crate) extra: Option<Box<dyn CustomMode>>,
     pub(crate) trace: Vec<(DVec3, DVec3, ClimberMode)>,
@@ -69,6 +72,7 @@ impl Scene {
             frame,
             tick: 0,
             climber,
+            knockback: None,
             dash: Dash::default(),
             extra: None,
             trace: Vec::new(),
@@ -139,7 +143,10 @@ impl Scene {
         modes.extend(swim.iter().map(|swim| swim as &dyn CustomMode));
         modes.extend(self.extra.as_deref());
         modes.retain(|mode| Some(ClimberMode::Custom(mode.id())) != missing);
-        let rules = StepRules::with_modes(&modes);
+        let rules = StepRules {
+            knockback: self.knockback.take(),
+            ..StepRules::with_modes(&modes)
+        };
 
         let state = *self.climber.state();
         let mut other = Climber::new(*self.climber.config(), DVec3::ZERO).unwrap();

@@ -56,7 +56,8 @@ pub mod prelude {
     };
     pub use clamber_surface::geometry::{Affine, Similarity};
     pub use clamber_surface::mesh::{
-        BuildOptions, ColliderMesh, Influence, MeshSource, Rig, SurfaceKind, SurfaceTag, TriangleId,
+        ColliderBuildOptions, ColliderMesh, Influence, MeshSource, Rig, SurfaceKind, SurfaceTag,
+        TriangleId,
     };
     pub use clamber_surface::rig::{
         Clip, JointId, Palette, Playback, PoseClock, PoseTrack, Skeleton, Transform,

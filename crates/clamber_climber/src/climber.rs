@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::step::{Asked, Judge, Scratch, Tick};
 use crate::{
     ClimberConfig, ClimberContact, ClimberError, ClimberEvent, ClimberInput, ClimberMode,
-    ClimberState, ContactRuleFn, CustomMode, StepReport,
+    ClimberState, ContactRuleFn, CustomMode, Knockback, StepReport,
 };
 
 /// A game's own rules for a step, passed to [`Climber::step_with`].
@@ -23,9 +23,11 @@ pub struct StepRules<'a> {
     /// Velocity of the air, in world space, metres a second, for example of wind. A climber that has touched nothing
     /// for a second takes it as its frame ([`ClimberState::base_velocity`]): steering in the air is measured against
     /// it. The terminal speed is always measured against it. It does not move a climber that does not steer: for a wind
-    /// that pushes, use a [`Blow`](crate::Blow) in each tick, as in the [guide](crate::guide#ground-that-moves). By
+    /// that pushes, use a [`Knockback`] in each tick, as in the [guide](crate::guide#ground-that-moves). By
     /// default zero.
     pub air_velocity: DVec3,
+    /// The blow that struck the climber since the last tick. By default none.
+    pub knockback: Option<Knockback>,
     /// Id of this climber among the obstacles of others ([`ClimberGroup`](crate::ClimberGroup)). If two climbers are at
     /// one place, their ids decide to which side each parts; without ids they stay there. `contact` gets the id with
     /// each query, so that one rule can tell climbers apart. By default `None`.
@@ -37,8 +39,8 @@ impl<'a> StepRules<'a> {
     /// before the first step.
     ///
     /// # Errors
-    /// [`ClimberError::SameMode`] if two of the modes have the same id, and [`ClimberError::NotFinite`] if the air's
-    /// velocity is not finite.
+    /// [`ClimberError::SameMode`] if two of the modes have the same id, [`ClimberError::NotFinite`] if the velocity of
+    /// the air or of a knockback is not finite, and [`ClimberError::OutOfRange`] if its damage is not from 0 to 1.
     pub fn check(&self) -> Result<(), ClimberError> {
         for (index, mode) in self.modes.iter().enumerate() {
             let mut before = self.modes[..index].iter();
@@ -46,11 +48,10 @@ impl<'a> StepRules<'a> {
                 return Err(ClimberError::SameMode(mode.id()));
             }
         }
-        if self.air_velocity.is_finite() {
-            Ok(())
-        } else {
-            Err(ClimberError::NotFinite("air_velocity"))
+        if !self.air_velocity.is_finite() {
+            return Err(ClimberError::NotFinite("air_velocity"));
         }
+        self.knockback.as_ref().map_or(Ok(()), Knockback::check)
     }
 
     /// Rules with a function that decides about contacts, without custom modes.
@@ -59,6 +60,7 @@ impl<'a> StepRules<'a> {
             contact: Some(contact),
             modes: &[],
             air_velocity: DVec3::ZERO,
+            knockback: None,
             id: None,
         }
     }
@@ -176,8 +178,7 @@ impl Climber {
     /// order. If two have the same id, the first counts.
     ///
     /// # Errors
-    /// [`ClimberError`] if `dt` is not positive and finite, the input is not finite, or a blow's damage is not from 0
-    /// to 1. The climber is unchanged then.
+    /// [`ClimberError`] if `dt` is not positive and finite, or the input is not finite. The climber is unchanged then.
     pub fn step(
         &mut self,
         input: &ClimberInput,
@@ -187,11 +188,10 @@ impl Climber {
         self.step_with(input, obstacles, &StepRules::default(), dt)
     }
 
-    /// [`Climber::step`] with a game's own rules for contacts, and its custom modes.
+    /// [`Climber::step`] with a game's own rules for contacts, its custom modes, and the blow that struck the climber.
     ///
     /// # Errors
-    /// As [`Climber::step`]. [`ClimberError::SameMode`] if two of the modes have the same id, and
-    /// [`ClimberError::NotFinite`] if the air's velocity is not finite.
+    /// As [`Climber::step`] and [`StepRules::check`].
     pub fn step_with(
         &mut self,
         input: &ClimberInput,

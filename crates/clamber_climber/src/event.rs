@@ -29,7 +29,7 @@ pub enum ClimberEvent {
     /// The climber's support did not move exactly once since the last step: the creature was advanced twice, or the
     /// climber was stepped twice. Sweeps saw only the last move. An obstacle of the game's own also causes this if the
     /// motion that it reports does not begin where the last one ended.
-    MovedRepeatedly {
+    SkippedTicks {
         /// The obstacle of the support.
         obstacle: ObstacleId,
     },

@@ -1,9 +1,8 @@
-use clamber_world::ObstacleId;
 use glam::DVec3;
 
 use crate::ClimberError;
 
-/// The player's input to a climber for one tick, and the blow that struck it.
+/// The player's input to a climber for one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
@@ -30,27 +29,12 @@ pub struct ClimberInput {
     /// ([`BodyConfig::height`](crate::BodyConfig::height)) is then its lower ball alone. After the button is released,
     /// it is the whole capsule again where there is room. A body without a height does not change.
     pub crouch: bool,
-    /// A blow that struck the climber since the last tick.
-    pub blow: Option<Blow>,
     /// The game's own buttons, one bit each, for its custom modes. This crate ignores them; `clamber_fight` reads the
     /// lower 16 bits.
     pub actions: u32,
     /// Where the player aims: a direction in world space, of any length, for the game's custom modes. This crate
     /// ignores it; `clamber_fight` shoots there.
     pub aim: DVec3,
-}
-
-/// A blow that strikes a climber.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
-pub struct Blow {
-    /// Change of the climber's velocity, in world space, metres a second.
-    pub velocity: DVec3,
-    /// Hit points that the blow costs, 0 to 1. Ignored without [`ClimberConfig::health`](crate::ClimberConfig::health).
-    pub damage: f64,
-    /// The obstacle that dealt the blow, if one did. Events repeat this id.
-    pub by: Option<ObstacleId>,
 }
 
 impl ClimberInput {
@@ -62,29 +46,16 @@ impl ClimberInput {
         jump_held: false,
         grip: false,
         crouch: false,
-        blow: None,
         actions: 0,
         aim: DVec3::ZERO,
     };
 
     pub(crate) fn validate(&self) -> Result<(), ClimberError> {
         let vectors = [self.walk, self.climb, self.aim];
-        if !vectors.iter().all(|v| v.is_finite()) {
-            return Err(ClimberError::NotFinite("input"));
+        if vectors.iter().all(|v| v.is_finite()) {
+            Ok(())
+        } else {
+            Err(ClimberError::NotFinite("input"))
         }
-        let Some(blow) = &self.blow else {
-            return Ok(());
-        };
-        if !blow.velocity.is_finite() || !blow.damage.is_finite() {
-            return Err(ClimberError::NotFinite("input"));
-        }
-        if !(0.0..=1.0).contains(&blow.damage) {
-            return Err(ClimberError::OutOfRange {
-                name: "blow.damage",
-                range: "from 0 to 1",
-                found: blow.damage,
-            });
-        }
-        Ok(())
     }
 }

@@ -11,6 +11,7 @@ mod event;
 mod group;
 pub mod guide;
 mod input;
+mod knockback;
 mod obstacle;
 mod pendulum;
 mod proxy;
@@ -31,11 +32,12 @@ pub use event::{ClimberEvent, Push, StepReport};
 /// The crate of the vectors and quaternions in this API.
 pub use glam;
 pub use group::ClimberGroup;
-pub use input::{Blow, ClimberInput};
+pub use input::ClimberInput;
+pub use knockback::Knockback;
 pub use obstacle::ClimberObstacle;
 pub use rule::{ContactQuery, ContactRule, ContactRuleFn};
 pub use shake::Shake;
-pub use state::{ClimberMode, ClimberState, MEMORY, Support, TRANSITIONS};
+pub use state::{CUSTOM_SLOTS, ClimberMode, ClimberState, Support, TRANSITIONS};
 pub use step::{
     CustomMode, FlyingMemory, HangingMemory, HoldingMemory, LedgeHangingMemory, ModeContext,
     NextMode, StandingMemory, TumblingMemory,

@@ -104,7 +104,7 @@ impl ClimberObstacle {
         let to = |position: DVec3| body.moved(position - state.position);
         match followed {
             Some((position, followed)) => {
-                let placed = followed.continuity == Continuity::Placed;
+                let placed = followed.continuity == Continuity::Teleported;
                 let begin = if placed { position } else { begin };
                 Self {
                     now: to(position),
@@ -315,7 +315,7 @@ impl Obstacle for ClimberObstacle {
         let usable = dt > 0.0 && position.is_finite();
         usable.then(|| PointMotion {
             velocity: self.base + self.receding(position),
-            placed: self.placed,
+            was_teleported: self.placed,
             ..PointMotion::translated(position - self.way, position, dt)
         })
     }

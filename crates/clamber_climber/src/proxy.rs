@@ -4,7 +4,7 @@ use clamber_world::{ObstacleId, ProxyBody, ProxyTouch};
 use glam::DVec3;
 
 use crate::step::slow_speed;
-use crate::{Blow, Climber, ClimberMode, ContactPhase};
+use crate::{Climber, ClimberMode, ContactPhase, Knockback};
 
 /// Fraction of [`slow_speed`] below which an impact is no blow to a climber on its feet or in the air.
 const FELT_IMPACT_SHARE: f64 = 0.02;
@@ -84,12 +84,12 @@ impl Climber {
         })
     }
 
-    /// The blow of an impulse, newton seconds, for [`ClimberInput::blow`](crate::ClimberInput::blow): the impulse over
-    /// the climber's mass. It knocks the climber down by the same rules as every blow
+    /// The knockback of an impulse, newton seconds, for
+    /// [`StepRules::knockback`](crate::StepRules::knockback): the impulse over the climber's mass. It knocks the climber down by the same rules as every blow
     /// ([`TumbleConfig::knock_speed`](crate::TumbleConfig::knock_speed)), and hurts as a landing at that speed does
     /// ([`HealthConfig::safe_speed`](crate::HealthConfig::safe_speed)). `None` for an impulse that is zero or not
     /// finite.
-    pub fn blow_of(&self, impulse: DVec3, by: Option<ObstacleId>) -> Option<Blow> {
+    pub fn knockback_of(&self, impulse: DVec3, by: Option<ObstacleId>) -> Option<Knockback> {
         let velocity = impulse / self.config().body.mass;
         let speed = velocity.length();
         if speed == 0.0 || !speed.is_finite() {
@@ -98,7 +98,7 @@ impl Climber {
         let damage = self.config().health.map_or(0.0, |health| {
             ((speed - health.safe_speed).max(0.0) * health.fall_damage).min(1.0)
         });
-        Some(Blow {
+        Some(Knockback {
             velocity,
             damage,
             by,

@@ -143,7 +143,7 @@ pub type ContactRuleFn<'a> = dyn Fn(&ContactQuery<'_>) -> ContactRule + 'a;
 pub struct ContactQuery<'a> {
     /// The climber, by [`StepRules::id`](crate::StepRules::id).
     pub climber: Option<ObstacleId>,
-    /// The climber's state at the tick's beginning. Through its [`memory`](ClimberState::memory), a rule can depend on
+    /// The climber's state at the tick's beginning. Through its [`custom_slots`](ClimberState::custom_slots), a rule can depend on
     /// the game's modes.
     pub state: &'a ClimberState,
     /// The climber's configuration.
@@ -197,13 +197,13 @@ impl<'a> ContactQuery<'a> {
         self.contact.tag
     }
 
-    /// The body within the obstacle ([`Obstacle::body_of`]): in a rapier world, the collider.
+    /// The body within the obstacle ([`Obstacle::rigid_body_id`]): in a rapier world, the collider.
     pub fn body(&self) -> u64 {
-        self.body_of(&self.contact.material)
+        self.rigid_body_id(&self.contact.material)
     }
 
-    fn body_of(&self, point: &MaterialPoint) -> u64 {
-        self.obstacle.body_of(point)
+    fn rigid_body_id(&self, point: &MaterialPoint) -> u64 {
+        self.obstacle.rigid_body_id(point)
     }
 
     /// True if the contact is with another character ([`Obstacle::character`]), such as a
@@ -247,7 +247,7 @@ impl<'a> ContactQuery<'a> {
         if self.is_supported_by_it(ClimberMode::LedgeHanging) {
             return rises || is_wall;
         }
-        let is_level = self.config.slope(normal) <= self.config.ground.stays_on_slope();
+        let is_level = self.config.slope(normal) <= self.config.ground.release_slope();
         let on = ON_PLANE_TOLERANCE * body.margin;
         let rising = (state.velocity - velocity).dot(normal) * self.dt;
         is_level && (height >= -on || height >= -body.margin && rising <= on)
@@ -257,7 +257,7 @@ impl<'a> ContactQuery<'a> {
         let on = self.state.support.map(|support| support.attachment);
         self.state.mode == mode
             && on.is_some_and(|on| {
-                on.obstacle == self.id && self.body_of(&on.material) == self.body()
+                on.obstacle == self.id && self.rigid_body_id(&on.material) == self.body()
             })
     }
 }

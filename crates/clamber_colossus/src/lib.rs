@@ -11,8 +11,8 @@ pub mod senses;
 
 pub use brain::{Brain, BrainError, BrainFile, BrainProblem, BrainReport, BrainState};
 pub use creature::{
-    ActiveBeam, ActiveShot, ActiveWave, AttackPhase, Blow, Creature, CreatureConfig, CreatureEvent,
-    CreatureReport, CreatureState, Foresight, Noise, Person, Riding, Surroundings, Wound,
+    ActiveBeam, ActiveShot, ActiveWave, AttackPhase, Creature, CreatureConfig, CreatureEvent,
+    CreatureReport, CreatureState, Foresight, Noise, Person, Riding, StrikeHit, Surroundings,
 };
 pub use error::ColossusError;
 pub use kind::{

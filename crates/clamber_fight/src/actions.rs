@@ -110,7 +110,6 @@ impl PlayerInput {
             jump_held: self.buttons & JUMP_HELD != 0,
             grip: self.buttons & GRIP_BIT != 0,
             crouch: self.buttons & CROUCH_BIT != 0,
-            blow: None,
             actions: u32::from(self.buttons & ACTION_BITS),
             aim: DVec3::new(level * sin, up, level * cos),
         }
@@ -135,7 +134,6 @@ mod tests {
                 jump_held: lot() > 0.0,
                 grip: lot() > 0.0,
                 crouch: lot() > 0.0,
-                blow: None,
                 actions: (lot().abs() * 255.0) as u32,
             };
             let sent = PlayerInput::from_input(&input);

@@ -38,13 +38,6 @@ pub enum ArenaError {
         /// Inputs given.
         found: usize,
     },
-    /// An input holds a blow.
-    #[error("the input of fighter {fighter} holds a blow; the arena deals the blows itself")]
-    Blow {
-        /// The fighter's number ([`FighterId`](crate::FighterId)), which may differ from its position in the list of
-        /// inputs.
-        fighter: usize,
-    },
     /// An input has a number that is not finite.
     #[error("the input of fighter {fighter} has a number that is not finite")]
     InputNotFinite {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::JointId;
 use glam::Vec3;
 
@@ -61,7 +61,7 @@ pub(crate) fn limb() -> Arc<ColliderMesh> {
         ..MeshSource::default()
     };
     Arc::new(
-        ColliderMesh::build(&source, &BuildOptions::default())
+        ColliderMesh::build(&source, &ColliderBuildOptions::default())
             .unwrap()
             .0,
     )

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use clamber_surface::mesh::{
-    BuildOptions, BuildReport, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag,
+    BuildReport, ColliderBuildOptions, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag,
     TriangleId,
 };
 use glam::Vec3;
@@ -54,7 +54,7 @@ impl Collision {
     pub(crate) fn build(
         &self,
         joint_count: usize,
-        options: &BuildOptions,
+        options: &ColliderBuildOptions,
     ) -> Result<(ColliderMesh, BuildReport), MeshError> {
         let source = MeshSource {
             positions: &self.positions,

@@ -1,7 +1,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use clamber_surface::mesh::{BuildOptions, SurfaceTag};
+use clamber_surface::mesh::{ColliderBuildOptions, SurfaceTag};
 
 /// Options for loading a creature.
 ///
@@ -26,7 +26,7 @@ pub struct LoadOptions {
     /// [`load_all`](crate::load_all) ignores it.
     pub skin: Option<usize>,
     /// Options for [`ColliderMesh::build`](clamber_surface::mesh::ColliderMesh::build).
-    pub build: BuildOptions,
+    pub build: ColliderBuildOptions,
     /// Height to scale the creature to, metres, as in [`LoadOptions::with_height`]; `None` keeps the file's size.
     pub height: Option<f32>,
     /// Function that chooses the tags of surfaces; `None` keeps the file's tags.
@@ -44,7 +44,7 @@ impl Default for LoadOptions {
         Self {
             scene: None,
             skin: None,
-            build: BuildOptions::default(),
+            build: ColliderBuildOptions::default(),
             height: None,
             tagger: None,
             max_repeated_vertices: 1 << 20,
@@ -82,7 +82,7 @@ impl LoadOptions {
 
     /// Builds the collider with these options.
     #[must_use]
-    pub fn with_build(self, build: BuildOptions) -> Self {
+    pub fn with_build(self, build: ColliderBuildOptions) -> Self {
         Self { build, ..self }
     }
 

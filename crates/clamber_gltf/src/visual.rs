@@ -1,7 +1,8 @@
 //! The meshes to draw of a creature, moved by the same joints as its collider, and their materials.
 
 use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag, normalize_influences,
+    ColliderBuildOptions, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag,
+    normalize_influences,
 };
 use glam::{Vec2, Vec3};
 use gltf::material::AlphaMode;
@@ -163,7 +164,7 @@ pub(crate) fn merged(visual: &[VisualMesh], joint_count: usize) -> Result<Collid
         joint_count,
         ..MeshSource::default()
     };
-    Ok(ColliderMesh::build(&source, &BuildOptions::default())?.0)
+    Ok(ColliderMesh::build(&source, &ColliderBuildOptions::default())?.0)
 }
 
 /// Reads all materials of a file, in its order.

@@ -175,14 +175,16 @@ impl<'a> Mover<'a> {
 
     /// Speed that a material point gains along a unit `direction`, metres a second, from an impulse of 1 N s in this
     /// direction. 0 if the point cannot be pushed.
-    pub fn push_response(
+    pub fn inverse_effective_mass(
         &self,
         obstacle: ObstacleId,
         point: &MaterialPoint,
         direction: DVec3,
     ) -> f64 {
         let obstacle = self.obstacle(obstacle);
-        let response = obstacle.map_or(0.0, |obstacle| obstacle.push_response(point, direction));
+        let response = obstacle.map_or(0.0, |obstacle| {
+            obstacle.inverse_effective_mass(point, direction)
+        });
         if response > 0.0 && response.is_finite() {
             response
         } else {
@@ -520,10 +522,10 @@ fn turn_outward_by_body(
     // From the end, so that dropped contacts do not shift those that are still to be handled.
     let mut end = touches.len();
     while end > first {
-        let body = obstacle.body_of(&touches[end - 1].contact.material);
+        let body = obstacle.rigid_body_id(&touches[end - 1].contact.material);
         let same = touches[first..end].iter().rev();
         let count = same
-            .take_while(|touch| obstacle.body_of(&touch.contact.material) == body)
+            .take_while(|touch| obstacle.rigid_body_id(&touch.contact.material) == body)
             .count();
         turn_outward(touches, end - count..end, limits);
         end -= count;

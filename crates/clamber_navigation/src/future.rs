@@ -71,7 +71,7 @@ impl FutureSkin {
         let Some(place) = forecast.pose(seconds, &mut self.palette) else {
             return Ok(false);
         };
-        self.surface.place(&self.palette, place)?;
+        self.surface.teleport(&self.palette, place)?;
         Ok(true)
     }
 

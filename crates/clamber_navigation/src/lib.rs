@@ -25,5 +25,5 @@ pub use graph::{ClimbGraph, Entry, Footing, Patch};
 pub use landing::{Airborne, Landing};
 pub use plan::{Forecast, Goal, Plan, PlanStep, Start};
 pub use progress::{Progress, Stage};
-pub use report::{ClimbReport, ClipReport, Missing, PointReport, WayOn};
+pub use report::{ClimbReport, ClipReport, EntryRoute, Missing, PointReport};
 pub use ride::{Ride, RideEnd, ThrowOff};

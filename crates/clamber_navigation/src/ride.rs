@@ -96,7 +96,7 @@ impl Rider {
                 return Some(ThrowOff::Knocked);
             }
             let slope = libm::acos(normal.dot(config.up()).clamp(-1.0, 1.0));
-            if slope > config.ground.stays_on_slope() {
+            if slope > config.ground.release_slope() {
                 return Some(ThrowOff::Slipped);
             }
         }

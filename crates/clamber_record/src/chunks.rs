@@ -4,20 +4,43 @@ use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_cha
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use foxglove::messages::Log;
+
 use crate::RecordError;
-use crate::taken::Taken;
 use crate::views::TakenScenery;
 
-/// Encodes ticks and writes them.
-pub(crate) trait WriteTicks<D, W>: Send + 'static {
-    /// Writes a chunk of ticks.
-    fn chunk(&mut self, ticks: Vec<Taken<D>>) -> Result<(), RecordError>;
+/// The copy of a tick that is made on the game's thread. The recorder's thread makes the recording from it later.
+pub(crate) struct Taken<D> {
+    pub(crate) tick: u64,
+    /// Data of a recording of this kind.
+    pub(crate) data: D,
+    /// True if transforms are due in this tick.
+    pub(crate) is_due: bool,
+    /// Log lines, without their times.
+    pub(crate) lines: Vec<Log>,
+    /// Meshes that are new, or whose places are due.
+    pub(crate) scenery: Vec<TakenScenery>,
+    /// States after this tick, from which a replay can start.
+    pub(crate) saved: Vec<MakeState>,
+    /// Number of ticks left out before this one.
+    pub(crate) gap: u64,
+}
 
-    /// Notes that `ticks` ticks were left out at the end of the recording.
-    fn ends_in_gap(&mut self, ticks: u64) -> Result<(), RecordError>;
+/// Function that makes the bytes of a saved state, or says why it cannot.
+pub(crate) type MakeState = Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send>;
 
-    /// Writes the index and returns the output.
-    fn finish(self) -> Result<W, RecordError>;
+impl<D> Taken<D> {
+    pub(crate) fn new(tick: u64, data: D, is_due: bool) -> Self {
+        Self {
+            tick,
+            data,
+            is_due,
+            lines: Vec::new(),
+            scenery: Vec::new(),
+            saved: Vec::new(),
+            gap: 0,
+        }
+    }
 }
 
 /// Gathers copies of ticks in chunks and passes the chunks to the writing thread.
@@ -47,25 +70,19 @@ struct WriterThread<D, W> {
 }
 
 /// The ticks of a chunk, and the number of ticks left out at the end of the recording.
-type Chunk<D> = (Vec<Taken<D>>, u64);
+pub(crate) type Chunk<D> = (Vec<Taken<D>>, u64);
 
 impl<D: Send + 'static, W: Send + 'static> Chunks<D, W> {
-    /// Starts the writing thread.
+    /// Starts the writing thread. `write` writes all chunks.
     pub(crate) fn start(
-        mut writing: impl WriteTicks<D, W>,
         (chunk_ticks, waits): (u32, bool),
+        write: impl FnOnce(&mut dyn Iterator<Item = Chunk<D>>) -> Result<W, RecordError>
+        + Send
+        + 'static,
     ) -> Result<Self, RecordError> {
         // One chunk is being gathered, up to `WAITING` wait in the channel, one is being written.
-        let (to_thread, chunks) = sync_channel::<Chunk<D>>(WAITING);
-        let work = move || {
-            while let Some((chunk, lost)) = next(&chunks) {
-                writing.chunk(chunk)?;
-                if lost > 0 {
-                    writing.ends_in_gap(lost)?;
-                }
-            }
-            writing.finish()
-        };
+        let (chunks, queue) = sync_channel::<Chunk<D>>(WAITING);
+        let work = move || write(&mut std::iter::from_fn(|| next(&queue)));
         let named = std::thread::Builder::new().name("clamber_record".to_owned());
         let failed = RecordError::io("cannot start the thread that writes the recording");
         let handle = named.spawn(work).map_err(failed)?;
@@ -78,10 +95,7 @@ impl<D: Send + 'static, W: Send + 'static> Chunks<D, W> {
             saved: 0,
             chunk: Vec::new(),
             meshes: Vec::new(),
-            thread: Some(WriterThread {
-                chunks: to_thread,
-                handle,
-            }),
+            thread: Some(WriterThread { chunks, handle }),
         })
     }
 }
@@ -108,31 +122,18 @@ fn next<T>(chunks: &Receiver<T>) -> Option<T> {
     }
 }
 
-/// Result of passing a chunk to the thread.
-enum Passed<D> {
-    On,
-    /// The queue is full; these are the chunk's ticks.
-    Back(Vec<Taken<D>>),
-    /// The thread has ended with an error.
-    Ended,
-}
-
 impl<D, W> WriterThread<D, W> {
     /// Passes a chunk to the thread. If the queue is full, waits for room or gives the chunk back, as `waits` says.
-    fn pass(&self, chunk: Chunk<D>, waits: bool) -> Passed<D> {
+    fn pass(&self, chunk: Chunk<D>, waits: bool) -> Result<(), TrySendError<Chunk<D>>> {
         match self.chunks.try_send(chunk) {
-            Ok(()) => Passed::On,
-            Err(TrySendError::Disconnected(_)) => Passed::Ended,
             Err(TrySendError::Full(chunk)) => {
                 self.handle.thread().unpark();
                 if !waits {
-                    return Passed::Back(chunk.0);
+                    return Err(TrySendError::Full(chunk));
                 }
-                match self.chunks.send(chunk) {
-                    Ok(()) => Passed::On,
-                    Err(_) => Passed::Ended,
-                }
+                Ok(self.chunks.send(chunk)?)
             }
+            passed => passed,
         }
     }
 
@@ -201,27 +202,26 @@ impl<D, W> Chunks<D, W> {
     /// Passes the gathered ticks to the thread, or leaves them out.
     fn hand_over(&mut self) -> Result<(), RecordError> {
         let waits = self.waits || self.saved < 2;
-        match self.pass_on(waits) {
-            Some(true) => Ok(()),
-            Some(false) => self.end().and(Err(RecordError::Ended)),
-            None => Err(RecordError::Ended),
+        if self.pass_on(waits) {
+            Ok(())
+        } else {
+            self.end().and(Err(RecordError::Ended))
         }
     }
 
-    /// Passes the gathered ticks to the thread, or leaves them out. Returns `Some(false)` if the thread has ended with
-    /// an error, and `None` if the thread was joined before.
-    fn pass_on(&mut self, waits: bool) -> Option<bool> {
-        self.thread.as_ref()?;
+    /// Passes the gathered ticks to the thread, or leaves them out. False if the thread has ended.
+    fn pass_on(&mut self, waits: bool) -> bool {
         let next = Vec::with_capacity(self.chunk.len());
         let mut ticks = core::mem::replace(&mut self.chunk, next);
-        self.saved += ticks.iter().filter(|tick| tick.is_saved()).count();
+        let is_saved = |tick: &Taken<D>| !tick.saved.is_empty();
+        self.saved += ticks.iter().filter(|tick| is_saved(tick)).count();
         if self.gap > 0 {
             // A gap ends only at a tick from which a replay can start.
-            let first = ticks.iter().position(Taken::is_saved);
+            let first = ticks.iter().position(is_saved);
             self.leave_out(ticks.drain(..first.unwrap_or(ticks.len())));
             match ticks.first_mut() {
                 Some(first) => first.gap = self.gap,
-                None if !waits => return Some(true),
+                None if !waits => return true,
                 None => {}
             }
         }
@@ -230,17 +230,15 @@ impl<D, W> Chunks<D, W> {
         }
         // An empty chunk tells the thread how many ticks are missing at the end.
         let lost = if ticks.is_empty() { self.gap } else { 0 };
-        match self.thread.as_ref()?.pass((ticks, lost), waits) {
-            Passed::On => {
-                self.gap = 0;
-                Some(true)
-            }
-            Passed::Back(ticks) => {
-                self.leave_out(ticks);
-                Some(true)
-            }
-            Passed::Ended => Some(false),
+        let Some(thread) = &self.thread else {
+            return false;
+        };
+        match thread.pass((ticks, lost), waits) {
+            Ok(()) => self.gap = 0,
+            Err(TrySendError::Full((ticks, _))) => self.leave_out(ticks),
+            Err(TrySendError::Disconnected(_)) => return false,
         }
+        true
     }
 
     /// Leaves ticks out, and keeps their new meshes.
@@ -248,7 +246,8 @@ impl<D, W> Chunks<D, W> {
         for tick in ticks {
             self.dropped += 1;
             self.gap += 1;
-            let new = tick.scenery.into_iter().filter(TakenScenery::has_shape);
+            // Only these have the shapes of new meshes.
+            let new = tick.scenery.into_iter().filter(|mesh| mesh.shape.is_some());
             self.meshes.extend(new);
         }
     }
@@ -276,37 +275,28 @@ impl<D, W> Drop for Chunks<D, W> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::taken::TakenState;
 
     /// Numbers of written ticks, each with the number of ticks left out before it.
     type Ticks = Vec<(u64, u64)>;
 
-    /// Stores the ticks that it is given, and sleeps this long at each chunk.
-    struct Slow(Ticks, Duration);
-
-    impl WriteTicks<(), Ticks> for Slow {
-        fn chunk(&mut self, ticks: Vec<Taken<()>>) -> Result<(), RecordError> {
-            std::thread::sleep(self.1);
-            self.0
-                .extend(ticks.iter().map(|tick| (tick.tick, tick.gap)));
-            Ok(())
-        }
-
-        fn ends_in_gap(&mut self, _: u64) -> Result<(), RecordError> {
-            Ok(())
-        }
-
-        fn finish(self) -> Result<Ticks, RecordError> {
-            Ok(self.0)
-        }
+    /// Starts a thread that sleeps this long at each chunk, and returns the ticks.
+    fn start(options: (u32, bool), sleep: Duration) -> Chunks<(), Ticks> {
+        let chunks = Chunks::<(), Ticks>::start(options, move |chunks| {
+            let mut written = Vec::new();
+            for (ticks, _) in chunks {
+                std::thread::sleep(sleep);
+                written.extend(ticks.iter().map(|tick| (tick.tick, tick.gap)));
+            }
+            Ok(written)
+        });
+        chunks.unwrap()
     }
 
     /// Adds a tick. It has a saved state if its number is a multiple of 5.
     fn play(chunks: &mut Chunks<(), Ticks>, number: u64) {
         let mut taken = Taken::new(number, (), false);
         if number.is_multiple_of(5) {
-            let state = || Ok(Vec::new());
-            taken.saved.push(TakenState(Box::new(state)));
+            taken.saved.push(Box::new(|| Ok(Vec::new())));
         }
         chunks.push(taken).unwrap();
     }
@@ -314,18 +304,15 @@ mod tests {
     #[test]
     fn a_game_that_waits_and_is_faster_than_the_thread_loses_no_tick() {
         for (ticks, pause) in [(0, 0), (1, 0), (61, 0), (10, 3)] {
-            let slow = Slow(Vec::new(), Duration::from_millis(2));
-            let mut chunks = Chunks::start(slow, (3, true)).unwrap();
+            let mut chunks = start((3, true), Duration::from_millis(2));
             for tick in 0..ticks {
                 play(&mut chunks, tick);
                 std::thread::sleep(Duration::from_millis(pause));
             }
             assert_eq!(chunks.dropped(), 0);
             let written = chunks.finish().unwrap();
-            assert_eq!(
-                written,
-                (0..ticks).map(|tick| (tick, 0)).collect::<Vec<_>>()
-            );
+            let all: Ticks = (0..ticks).map(|tick| (tick, 0)).collect();
+            assert_eq!(written, all);
         }
     }
 
@@ -336,8 +323,7 @@ mod tests {
         // Saved ticks are 5 apart: each chunk of 5 begins with one, some chunks of 3 have none, and chunks of 7 have
         // them at changing places.
         for size in [5, 3, 7] {
-            let slow = Slow(Vec::new(), Duration::from_millis(20));
-            let mut chunks = Chunks::start(slow, (size, false)).unwrap();
+            let mut chunks = start((size, false), Duration::from_millis(20));
             let mut waits = 0;
             for tick in 0..600 {
                 let began = std::time::Instant::now();

@@ -13,6 +13,7 @@ use mcap::MAGIC;
 use mcap::records::{Record, op};
 use prost::Message;
 
+use crate::kind::Entries;
 use crate::messages::Saved;
 use crate::output::GAP;
 use crate::places::Places;
@@ -38,7 +39,7 @@ pub(crate) const METADATA: u64 = 1 << 24;
 #[derive(Debug)]
 pub(crate) struct Contents {
     /// Metadata records by name. If several have the same name, the first one counts.
-    pub(crate) metadata: BTreeMap<String, BTreeMap<String, String>>,
+    pub(crate) metadata: BTreeMap<String, Entries>,
     /// Places of the ticks and saved states of a climber and of an arena: a recording has one of them.
     pub(crate) places: [Places; 2],
     /// How the file ends.
@@ -86,16 +87,22 @@ const fn topics<K: RecordingKind>() -> [Topic; 2] {
 /// The topics of both kinds.
 const TOPICS: [[Topic; 2]; 2] = [topics::<OfClimber>(), topics::<OfArena>()];
 
-/// Why the walk stopped.
+/// Why the walk stopped before the end of the file.
 enum Stop {
-    Early,
-    Damaged(u64, String),
-    Failed(std::io::Error),
+    At(Ending),
+    Error(RecordError),
 }
 
 impl From<std::io::Error> for Stop {
-    fn from(error: std::io::Error) -> Self {
-        Self::Failed(error)
+    fn from(source: std::io::Error) -> Self {
+        Self::Error(RecordError::io("the recording cannot be read")(source))
+    }
+}
+
+impl Stop {
+    fn damaged(at: u64, reason: &str) -> Self {
+        let reason = reason.to_owned();
+        Self::At(Ending::Damaged { at, reason })
     }
 }
 
@@ -120,17 +127,10 @@ pub(crate) fn read(bytes: Bytes) -> Result<Contents, RecordError> {
             walk(std::io::BufReader::new(&*file), &mut found)
         }
     };
-    if !found.is_mcap {
-        return match walked {
-            Err(Stop::Failed(source)) => Err(failed(source)),
-            _ => Err(RecordError::NotMcap),
-        };
-    }
     let ending = match walked {
         Ok(()) => Ending::Whole,
-        Err(Stop::Early) => Ending::Early,
-        Err(Stop::Damaged(at, reason)) => Ending::Damaged { at, reason },
-        Err(Stop::Failed(source)) => return Err(failed(source)),
+        Err(Stop::At(ending)) => ending,
+        Err(Stop::Error(error)) => return Err(error),
     };
     Ok(Contents {
         metadata: found.metadata,
@@ -140,15 +140,10 @@ pub(crate) fn read(bytes: Bytes) -> Result<Contents, RecordError> {
     })
 }
 
-fn failed(source: std::io::Error) -> RecordError {
-    RecordError::io("the recording cannot be read")(source)
-}
-
 /// Results of the walk so far.
 #[derive(Default)]
 struct Found {
-    is_mcap: bool,
-    metadata: BTreeMap<String, BTreeMap<String, String>>,
+    metadata: BTreeMap<String, Entries>,
     topics: BTreeMap<u16, Topic>,
     chunks: Vec<ChunkPlace>,
     places: [Places; 2],
@@ -162,7 +157,7 @@ struct Reader<R> {
 }
 
 impl<R: Read> Reader<R> {
-    /// Reads `count` bytes into `into`; [`Stop::Early`] if the file has fewer left.
+    /// Reads `count` bytes into `into`; [`Ending::Early`] if the file has fewer left.
     fn take(&mut self, count: u64, into: &mut Vec<u8>) -> Result<(), Stop> {
         into.clear();
         let read = self.inner.by_ref().take(count).read_to_end(into)? as u64;
@@ -171,7 +166,7 @@ impl<R: Read> Reader<R> {
         if read == count {
             Ok(())
         } else {
-            Err(Stop::Early)
+            Err(Stop::At(Ending::Early))
         }
     }
 
@@ -195,10 +190,12 @@ fn walk(file: impl Read, found: &mut Found) -> Result<(), Stop> {
         sum: crc32fast::Hasher::new(),
     };
     let mut buffer = Vec::new();
-    reader.take(MAGIC.len() as u64, &mut buffer)?;
-    found.is_mcap = buffer == MAGIC;
-    if !found.is_mcap {
-        return Err(Stop::Early);
+    let begun = reader.take(MAGIC.len() as u64, &mut buffer);
+    if let Err(Stop::Error(error)) = begun {
+        return Err(Stop::Error(error));
+    }
+    if buffer != MAGIC {
+        return Err(Stop::Error(RecordError::NotMcap));
     }
     loop {
         let (at, before) = (reader.at, reader.sum.clone());
@@ -206,7 +203,7 @@ fn walk(file: impl Read, found: &mut Found) -> Result<(), Stop> {
         let opcode = buffer[0];
         let length = buffer[1..].try_into().map_or(0, u64::from_le_bytes);
         let body = reader.at;
-        let damaged = |reason: &str| Stop::Damaged(at, reason.to_owned());
+        let damaged = |reason: &str| Stop::damaged(at, reason);
         match opcode {
             op::METADATA => {
                 if length > METADATA {
@@ -262,41 +259,29 @@ fn walk(file: impl Read, found: &mut Found) -> Result<(), Stop> {
 /// Reads the rest of the file after the data. It skips the summary and checks the magic bytes at the end.
 fn end_of<R: Read>(reader: &mut Reader<R>) -> Result<(), Stop> {
     let mut last: Vec<u8> = Vec::new();
-    let mut piece = vec![0; 1 << 16];
-    loop {
-        let count = match reader.inner.read(&mut piece) {
-            Ok(0) => break,
-            Ok(count) => count,
-            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
-            Err(error) => return Err(error.into()),
-        };
-        last.extend_from_slice(&piece[..count]);
+    while reader.inner.by_ref().take(1 << 16).read_to_end(&mut last)? > 0 {
         let kept = last.len().saturating_sub(MAGIC.len());
         last.drain(..kept);
     }
     if last == MAGIC {
         Ok(())
     } else {
-        Err(Stop::Early)
+        Err(Stop::At(Ending::Early))
     }
 }
 
 /// The kind and the range of the body of the record at `at`; `None` if the record reaches beyond the end.
 fn record(bytes: &[u8], at: usize) -> Option<(u8, core::ops::Range<usize>)> {
-    let start = at
-        .checked_add(PREFIX)
-        .filter(|start| *start <= bytes.len())?;
-    let length = bytes.get(at + 1..start)?.try_into().ok()?;
+    let (prefix, rest) = bytes.get(at..)?.split_first_chunk::<PREFIX>()?;
+    let [opcode, length @ ..] = *prefix;
     let length = usize::try_from(u64::from_le_bytes(length)).ok()?;
-    let stop = start
-        .checked_add(length)
-        .filter(|stop| *stop <= bytes.len())?;
-    Some((bytes[at], start..stop))
+    let start = at + PREFIX;
+    (length <= rest.len()).then(|| (opcode, start..start + length))
 }
 
 impl Found {
     fn chunk(&mut self, place: ChunkPlace, body: &[u8]) -> Result<(), Stop> {
-        let damaged = |reason: &str| Stop::Damaged(place.at, reason.to_owned());
+        let damaged = |reason: &str| Stop::damaged(place.at, reason);
         let data = data_of(body).map_err(damaged)?;
         let index = u32::try_from(self.chunks.len());
         let chunk = index.map_err(|_| damaged("more chunks than are read"))?;
@@ -306,67 +291,47 @@ impl Found {
             let Some((opcode, body)) = record(&data, at) else {
                 return Err(damaged("a record that reaches beyond its chunk"));
             };
-            match (opcode, parse_inner(opcode, &data[body.clone()])) {
-                (_, Some(Record::Channel(channel))) => {
+            at = body.end;
+            // Only the kinds that are needed are parsed: mcap's parser of the others is not made for arbitrary bytes.
+            if !matches!(opcode, op::CHANNEL | op::MESSAGE) {
+                continue;
+            }
+            match parse(opcode, &data[body]) {
+                Some(Record::Channel(channel)) => {
                     let mut topics = TOPICS.into_iter().flatten();
                     if let Some(topic) = topics.find(|topic| topic.name == channel.topic) {
                         self.topics.insert(channel.id, topic);
                     }
                 }
-                (
-                    _,
-                    Some(Record::Message {
-                        header,
-                        data: message,
-                    }),
-                ) => {
-                    let from = body.end - message.len();
+                Some(Record::Message {
+                    header,
+                    data: message,
+                }) => {
+                    let Some(topic) = self.topics.get(&header.channel_id).copied() else {
+                        continue;
+                    };
                     // The bounds fit in 32 bits, because a chunk has at most `LARGEST` bytes.
                     let within = Place {
                         chunk,
-                        from: from as u32,
-                        to: body.end as u32,
+                        from: (at - message.len()) as u32,
+                        to: at as u32,
                     };
-                    if let Some(topic) = self.topics.get(&header.channel_id).copied() {
-                        let at = place.at + CHUNK_HEADER + u64::from(within.from);
-                        self.message((topic, within), &message, at)
-                            .map_err(|error| Stop::Damaged(at, error.to_string()))?;
-                    }
+                    let offset = place.at + CHUNK_HEADER + u64::from(within.from);
+                    let number = (topic.number)(&message).map_err(|reason| RecordError::Message {
+                        at: offset,
+                        topic: topic.name,
+                        reason,
+                    });
+                    let places = &mut self.places[topic.kind];
+                    let added = number.and_then(|number| match topic.is_saved {
+                        true => places.add_saved(number, within),
+                        false => places.add_tick(number, within),
+                    });
+                    added.map_err(|error| Stop::damaged(offset, &error.to_string()))?;
                 }
-                (op::CHANNEL | op::MESSAGE, _) => {
-                    return Err(damaged("a chunk with a record that cannot be read"));
-                }
-                _ => {}
+                _ => return Err(damaged("a chunk with a record that cannot be read")),
             }
-            at = body.end;
         }
         Ok(())
     }
-
-    /// Checks a message, and stores its place. `at` is the message's offset in the file, for errors.
-    fn message(
-        &mut self,
-        (topic, place): (Topic, Place),
-        message: &[u8],
-        at: u64,
-    ) -> Result<(), RecordError> {
-        let number = (topic.number)(message).map_err(|reason| RecordError::Message {
-            at,
-            topic: topic.name,
-            reason,
-        })?;
-        let places = &mut self.places[topic.kind];
-        if topic.is_saved {
-            places.add_saved(number, place)
-        } else {
-            places.add_tick(number, place)
-        }
-    }
-}
-
-/// Parses only the kinds of records that are needed: mcap's parser of the other kinds is not made for arbitrary bytes.
-fn parse_inner(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
-    matches!(opcode, op::CHANNEL | op::MESSAGE)
-        .then(|| parse(opcode, body))
-        .flatten()
 }

@@ -5,6 +5,9 @@ use std::fmt;
 
 use crate::RecordError;
 
+/// The entries of a metadata record.
+pub(crate) type Entries = BTreeMap<String, String>;
+
 /// Marks a recording of one climber and its creature, in a scene that the game steps itself.
 #[derive(Clone, Copy, Debug)]
 pub enum OfClimber {}
@@ -22,7 +25,7 @@ pub trait RecordingKind: Sealed {
 
     /// Copy of a tick's data on its way to the file.
     #[doc(hidden)]
-    type Taken;
+    type Taken: Send + 'static;
     /// Data that the recorder keeps from tick to tick.
     #[doc(hidden)]
     type Memory;
@@ -32,10 +35,7 @@ pub trait RecordingKind: Sealed {
 
     /// Reads the metadata.
     #[doc(hidden)]
-    fn info(
-        metadata: &BTreeMap<String, String>,
-        settings: BTreeMap<String, String>,
-    ) -> Result<Self::Info, RecordError>;
+    fn info(metadata: &Entries, settings: Entries) -> Result<Self::Info, RecordError>;
 
     /// Decodes the message of a tick, and returns it with its number; `Err` says why it cannot be read.
     #[doc(hidden)]

@@ -14,10 +14,8 @@ mod places;
 mod recorder;
 mod recording;
 mod source;
-mod taken;
 pub mod topics;
 mod views;
-mod writing;
 
 pub use any::AnyRecording;
 pub use arena::{

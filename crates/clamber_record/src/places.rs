@@ -22,14 +22,12 @@ impl Places {
     /// Adds a tick. Its number must be one more than the last one's, or larger after a gap.
     pub(crate) fn add_tick(&mut self, tick: u64, place: Place) -> Result<(), RecordError> {
         let last = self.last();
-        let follows = last.is_none_or(|last| last.checked_add(1) == Some(tick));
-        if !follows && (last >= Some(tick) || self.lacks_saved()) {
+        let follows = last.is_some_and(|last| last.checked_add(1) == Some(tick));
+        if self.lacks_saved() || (!follows && last >= Some(tick)) {
             return Err(self.order(tick));
         }
-        if self.runs.is_empty() || !follows {
+        if !follows {
             self.runs.push((tick, self.ticks.len()));
-        } else if self.lacks_saved() {
-            return Err(self.order(tick));
         }
         self.ticks.push(place);
         Ok(())
@@ -37,10 +35,8 @@ impl Places {
 
     /// True if the last run begins after a gap and has no saved state.
     fn lacks_saved(&self) -> bool {
-        let Some((first, _)) = self.runs.last().filter(|_| self.runs.len() > 1) else {
-            return false;
-        };
-        self.saved.last().is_none_or(|(saved, _)| saved < first)
+        let saved = self.saved.last().map(|(saved, _)| saved);
+        self.runs.len() > 1 && saved < self.runs.last().map(|(first, _)| first)
     }
 
     /// Adds a state that was saved after the last tick.
@@ -136,10 +132,8 @@ mod tests {
             to: 0,
         };
         let mut places = Places::default();
-        assert_eq!(
-            (places.first(), places.last(), places.len()),
-            (None, None, 0)
-        );
+        let range = |places: &Places| (places.first(), places.last(), places.len());
+        assert_eq!(range(&places), (None, None, 0));
         for tick in [5, 6, 7] {
             places.add_tick(tick, place(tick as u32)).unwrap();
         }
@@ -156,10 +150,7 @@ mod tests {
         places.add_tick(21, place(21)).unwrap();
         let runs: Vec<_> = places.runs().collect();
         assert_eq!(runs, [5..=7, 20..=21]);
-        assert_eq!(
-            (places.first(), places.last(), places.len()),
-            (Some(5), Some(21), 5)
-        );
+        assert_eq!(range(&places), (Some(5), Some(21), 5));
         for tick in [5, 6, 7, 20, 21] {
             assert_eq!(places.tick(tick).unwrap(), &place(tick as u32));
         }

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use clamber_world::ObstacleId;
 
-use crate::chunks::{Chunks, WriteTicks};
+use crate::chunks::Chunks;
 use crate::names::ObstacleNames;
+use crate::output::Output;
 use crate::views::{SceneryNames, SceneryView};
 use crate::{RecordError, RecordingKind};
 
@@ -91,33 +92,32 @@ pub struct RecorderOf<K: RecordingKind, W: Write> {
     pub(crate) chunks: Chunks<K::Taken, W>,
 }
 
-impl<K: RecordingKind, W: Write + Send + 'static> RecorderOf<K, W>
-where
-    K::Taken: Send + 'static,
-{
-    /// Starts the thread that writes.
+impl<K: RecordingKind, W: Write + Send + 'static> RecorderOf<K, W> {
+    /// Starts the thread that writes. `encode` sends the messages of a tick.
     pub(crate) fn start(
-        writing: impl WriteTicks<K::Taken, W>,
+        output: Output<W>,
         memory: K::Memory,
         options: RecordOptions,
+        encode: impl FnMut(K::Taken, &mut Output<W>) -> Result<(), RecordError> + Send + 'static,
     ) -> Result<Self, RecordError> {
+        let chunks = (options.chunk_ticks, options.waits);
         Ok(Self {
             options,
             names: ObstacleNames::new(),
             scenery: SceneryNames::default(),
             memory,
-            chunks: Chunks::start(writing, (options.chunk_ticks, options.waits))?,
+            chunks: Chunks::start(chunks, move |chunks| output.write(encode, chunks))?,
         })
     }
 }
 
 impl<K: RecordingKind, W: Write> RecorderOf<K, W> {
     /// Names an obstacle in the log from the next tick on. In a recording of one climber, give the creature the name in
-    /// [`RecordingInfo::creature`](crate::RecordingInfo::creature): then the log also names the part of the creature that the climber is on. In a
-    /// recording of an arena, creatures and fighters already have the names in [`ArenaInfo`](crate::ArenaInfo).
+    /// [`RecordingInfo::creature`](crate::RecordingInfo::creature): then the log also names the part of the creature
+    /// that the climber is on. In a recording of an arena, creatures and fighters already have the names in
+    /// [`ArenaInfo`](crate::ArenaInfo).
     pub fn name(&mut self, obstacle: ObstacleId, name: &str) {
-        self.names.retain(|(id, _)| *id != obstacle);
-        self.names.push((obstacle, name.to_owned()));
+        self.names.insert(obstacle, name.to_owned());
     }
 
     /// True if transforms are due in the tick recorded last: see [`RecordOptions::transforms_every`]. In other ticks,

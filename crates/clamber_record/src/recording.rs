@@ -39,7 +39,8 @@ impl fmt::Display for Ending {
 
 /// A recording that was read: its metadata, and all ticks up to where the file ends or is damaged.
 ///
-/// [`Recording`](crate::Recording) is a recording of one climber, [`ArenaRecording`](crate::ArenaRecording) a recording of an arena.
+/// [`Recording`](crate::Recording) is a recording of one climber, [`ArenaRecording`](crate::ArenaRecording) a recording
+/// of an arena.
 #[derive(Clone, Debug)]
 pub struct RecordingOf<K: RecordingKind> {
     info: K::Info,
@@ -72,9 +73,11 @@ impl<K: RecordingKind> RecordingOf<K> {
     }
 
     pub(crate) fn from_contents(mut contents: Contents) -> Result<Self, RecordError> {
-        let kinds = [OfClimber::TOPICS, OfArena::TOPICS].into_iter();
-        let mut others = kinds.filter(|kind| kind.index != K::TOPICS.index);
-        let other = others.find(|kind| contents.metadata.contains_key(kind.metadata));
+        let other = [OfClimber::TOPICS, OfArena::TOPICS]
+            .into_iter()
+            .find(|kind| {
+                kind.index != K::TOPICS.index && contents.metadata.contains_key(kind.metadata)
+            });
         let mut take = |name: &str| {
             contents.metadata.remove(name).ok_or_else(|| {
                 RecordError::NotARecording(match other {

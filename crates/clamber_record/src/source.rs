@@ -117,10 +117,7 @@ impl Source {
         {
             return Ok(Arc::clone(chunk));
         }
-        let changed = |source| RecordError::Io {
-            what: "the recording cannot be read any more".to_owned(),
-            source,
-        };
+        let changed = |source| RecordError::io("the recording cannot be read any more")(source);
         let place = self.0.chunks.get(index as usize).copied();
         let place = place.unwrap_or(ChunkPlace { at: 0, length: 0 });
         let body = self.0.bytes.read(place).map_err(changed)?;

@@ -6,7 +6,7 @@ use glam::{DAffine3, DQuat, DVec3, Vec3};
 
 use crate::geometry::{Affine, Capsule, Similarity, rotation_from_axis_angle};
 use crate::mesh::hierarchy::{Child, Hierarchy};
-use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use crate::mesh::{ColliderBuildOptions, ColliderMesh, Influence, MeshSource};
 use crate::rig::{JointId, Palette};
 use crate::surface::SkinnedSurface;
 
@@ -28,7 +28,7 @@ pub(crate) fn influence(joint: u32, weight: f32) -> Influence {
 
 /// The mesh that a build with the default options makes.
 pub(crate) fn built(source: &MeshSource<'_>) -> ColliderMesh {
-    ColliderMesh::build(source, &BuildOptions::default())
+    ColliderMesh::build(source, &ColliderBuildOptions::default())
         .unwrap()
         .0
 }
@@ -95,7 +95,7 @@ pub(crate) fn tube(joints: u32, sides: u32) -> Arc<ColliderMesh> {
         joint_count: joints as usize,
         ..MeshSource::default()
     };
-    let (mesh, report) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    let (mesh, report) = ColliderMesh::build(&source, &ColliderBuildOptions::default()).unwrap();
     assert_eq!(report.degenerate_triangles + report.duplicate_triangles, 0);
     Arc::new(mesh)
 }

@@ -9,8 +9,8 @@
 
 use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, IslandId, MeshSource, PartId, SurfaceKind, SurfaceTag, TriangleId,
-    VertexId,
+    ColliderBuildOptions, ColliderMesh, IslandId, MeshSource, PartId, SurfaceKind, SurfaceTag,
+    TriangleId, VertexId,
 };
 use clamber_surface::rig::{
     Joint, JointId, Palette, Playback, Pose, PoseMotion, PoseTrack, Skeleton, Transform,
@@ -83,7 +83,7 @@ fn ids_and_tags_round_trip() {
 fn a_saved_anchor_is_valid_on_a_mesh_rebuilt_and_edited_alike() {
     let made = || {
         let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
-        let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+        let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default()).unwrap();
         let mut surface = SkinnedSurface::new(mesh.into());
         let added = surface.edit(|edit| {
             let tip = edit.add_vertex(Vec3::Z, source.influences.split_at(1).0)?;

@@ -23,12 +23,12 @@ const ROUNDING: f64 = 0.02;
 /// ```
 /// use clamber_world::{Attachment, Obstacle, ObstacleId};
 /// # use clamber_surface::geometry::{Affine, Similarity};
-/// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+/// # use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource};
 /// # use clamber_surface::rig::Palette;
 /// # use clamber_surface::surface::SkinnedSurface;
 /// # use glam::{DVec3, Vec3};
 /// # let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
-/// # let mut creature = SkinnedSurface::new(ColliderMesh::build(&source, &BuildOptions::default())?.0.into());
+/// # let mut creature = SkinnedSurface::new(ColliderMesh::build(&source, &ColliderBuildOptions::default())?.0.into());
 /// # let rest = Palette::from_matrices([Affine::IDENTITY]);
 /// let id = ObstacleId(7);
 /// let above = DVec3::new(0.2, 0.2, 1.0);
@@ -72,10 +72,10 @@ pub enum Continuity {
     /// The material moved there from its position when last followed.
     Moved,
     /// The material was teleported there, which is not motion.
-    Placed,
+    Teleported,
     /// The material moved several times since it was last followed, for example because a creature was advanced twice
     /// in one tick. The motion covers all of these moves; sweeps against the obstacle cover only the last one.
-    MovedRepeatedly,
+    SkippedTicks,
 }
 
 /// The result of [`Attachment::follow`].
@@ -83,8 +83,8 @@ pub enum Continuity {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 #[non_exhaustive]
-pub struct Followed {
-    /// Motion of the material point, from where it was last followed to where it is now. For [`Continuity::Placed`], it
+pub struct FollowResult {
+    /// Motion of the material point, from where it was last followed to where it is now. For [`Continuity::Teleported`], it
     /// is the motion that the obstacle reports for the tick. It does not start where the point was last followed, so
     /// the teleport is not part of it.
     pub motion: PointMotion,
@@ -151,20 +151,20 @@ impl Attachment {
     ///
     /// `slack` is the largest allowed distance, metres, between the stored position and the previous position that the
     /// obstacle reports. It must be at least 0. For a character of human size 0.01 is right: more than rounding, less
-    /// than a player sees. A larger distance is allowed for an obstacle that was [placed](Continuity::Placed), and up
-    /// to 8 times its last move ([`Continuity::MovedRepeatedly`]).
+    /// than a player sees. A larger distance is allowed for an obstacle that was [placed](Continuity::Teleported), and up
+    /// to 8 times its last move ([`Continuity::SkippedTicks`]).
     ///
     /// Returns `None` and changes nothing if the material is gone. The same happens if the distance is too large, which
     /// means that the id now names another obstacle.
-    pub fn follow(&mut self, obstacle: &dyn Obstacle, dt: f64, slack: f64) -> Option<Followed> {
+    pub fn follow(&mut self, obstacle: &dyn Obstacle, dt: f64, slack: f64) -> Option<FollowResult> {
         let mut motion = obstacle.motion(&self.material, dt)?;
         let frame = motion.frame.unwrap_or(self.frame);
         let gap = motion.previous_position.distance(self.point);
         let step = motion.position.distance(motion.previous_position);
-        let continuity = if gap <= slack * ROUNDING || motion.placed && gap <= slack {
+        let continuity = if gap <= slack * ROUNDING || motion.was_teleported && gap <= slack {
             Continuity::Moved
-        } else if motion.placed {
-            Continuity::Placed
+        } else if motion.was_teleported {
+            Continuity::Teleported
         } else {
             if gap > slack.max(MOST_MOVES * step) {
                 return None;
@@ -173,14 +173,14 @@ impl Attachment {
             motion.velocity = (motion.position - self.point) / dt;
             motion.turn = (frame * self.frame.conjugate()).normalize();
             if gap >= PART * step {
-                Continuity::MovedRepeatedly
+                Continuity::SkippedTicks
             } else {
                 Continuity::Moved
             }
         };
         self.frame = frame;
         self.point = motion.position;
-        Some(Followed { motion, continuity })
+        Some(FollowResult { motion, continuity })
     }
 
     /// True if all numbers are finite.

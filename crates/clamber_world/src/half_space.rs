@@ -125,7 +125,7 @@ impl Obstacle for HalfSpace {
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
         let at = DVec3::from(point.coordinates);
         Some(PointMotion {
-            placed: false,
+            was_teleported: false,
             ..PointMotion::translated(at, at, dt)
         })
     }

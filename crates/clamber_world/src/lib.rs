@@ -17,7 +17,7 @@ mod surface;
 mod testing;
 mod triangle_terrain;
 
-pub use attachment::{Attachment, Continuity, Followed};
+pub use attachment::{Attachment, Continuity, FollowResult};
 /// A hash for comparing runs.
 pub use clamber_surface::Fingerprint;
 /// The shape that obstacles are queried with.
@@ -42,7 +42,7 @@ pub use others::{Others, OthersError};
 pub use parry3d;
 pub use proxy::{ProxyBody, ProxyImpact, ProxyMeeting, ProxyShare, ProxyTouch};
 #[cfg(feature = "rapier")]
-pub use rapier::{BodyPoses, ClimberProxy, ProxyHit, RapierTerrain, apply_push};
+pub use rapier::{BodyPoses, ClimberProxy, ProxyImpulse, RapierTerrain, apply_push};
 /// The version of rapier that [`RapierTerrain`] uses.
 #[cfg(feature = "rapier")]
 pub use rapier3d;

@@ -93,7 +93,7 @@ pub struct PointMotion {
     pub velocity: DVec3,
     /// True if the point may have been teleported. An obstacle that cannot tell a teleport from rest sets it when the
     /// point did not move. Never true for a point that moved.
-    pub placed: bool,
+    pub was_teleported: bool,
     /// Rotation of the material at the point, from the obstacle's rest pose to now; for a rigid body, its rotation.
     /// `None` where the material has collapsed and has no direction of its own. The last known frame then stays valid.
     pub frame: Option<DQuat>,
@@ -107,8 +107,8 @@ pub struct PointMotion {
 
 impl PointMotion {
     /// The motion of material that neither turns nor stretches, over a tick of `dt` seconds. The velocity is zero
-    /// unless `dt` is positive. [`placed`](Self::placed) is set if the point did not move; an obstacle that can tell
-    /// rest from a teleport corrects it. For material that turns, use
+    /// unless `dt` is positive. [`was_teleported`](Self::was_teleported) is set if the point did not move; an obstacle
+    /// that can tell rest from a teleport corrects it. For material that turns, use
     /// [`RigidPose::motion_since`](crate::RigidPose::motion_since).
     pub fn translated(previous_position: DVec3, position: DVec3, dt: f64) -> Self {
         let way = position - previous_position;
@@ -116,7 +116,7 @@ impl PointMotion {
             position,
             previous_position,
             velocity: if dt > 0.0 { way / dt } else { DVec3::ZERO },
-            placed: way == DVec3::ZERO,
+            was_teleported: way == DVec3::ZERO,
             frame: Some(DQuat::IDENTITY),
             turn: DQuat::IDENTITY,
             area_ratio: 1.0,
@@ -323,7 +323,7 @@ pub trait Obstacle {
 
     /// The speed along a unit `direction`, metres a second, that an impulse of 1 N s in this direction gives to a
     /// material point. 0 if the point cannot be pushed.
-    fn push_response(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
+    fn inverse_effective_mass(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
         let _ = (point, direction);
         0.0
     }
@@ -338,7 +338,7 @@ pub trait Obstacle {
     /// Id of the rigid body that owns the point; in a rapier world, each collider counts as a body. When a character is
     /// pressed through a surface, the contacts of one body are judged together. The default treats the obstacle as one
     /// body, 0.
-    fn body_of(&self, point: &MaterialPoint) -> u64 {
+    fn rigid_body_id(&self, point: &MaterialPoint) -> u64 {
         let _ = point;
         0
     }

@@ -80,7 +80,7 @@ impl RigidPose {
     /// `before` at the start of the tick and is `self` now. `origin` is the world position of the poses' origin. `None`
     /// unless `dt` is positive and the current position is finite; `before` is not checked.
     ///
-    /// If the two poses are equal, the point counts as [placed](PointMotion::placed).
+    /// If the two poses are equal, the point counts as [placed](PointMotion::was_teleported).
     pub fn motion_since(
         &self,
         before: &Self,
@@ -96,7 +96,7 @@ impl RigidPose {
             previous_position,
             velocity: (position - previous_position) / dt,
             // An engine's poses do not tell a teleported body from one at rest.
-            placed: before == self,
+            was_teleported: before == self,
             frame: Some(self.rotation),
             turn: (self.rotation * before.rotation.conjugate()).normalize(),
             area_ratio: 1.0,

@@ -168,7 +168,7 @@ impl Obstacle for SkinnedSurface {
             position: motion.position,
             previous_position: motion.previous_position,
             velocity: motion.velocity,
-            placed: self.is_placed(),
+            was_teleported: self.was_teleported(),
             frame: (!motion.collapsed).then_some(motion.frame),
             turn: if angle > 0.0 {
                 rotation_from_axis_angle(spin / angle, angle)

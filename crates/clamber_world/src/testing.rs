@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::sync::Arc;
 
 use clamber_surface::geometry::Affine;
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 use crate::{Obstacle, SweepContact, TargetMotion, WorldCapsule};
 
 pub(crate) fn surface_of(source: &MeshSource<'_>) -> SkinnedSurface {
-    let (mesh, _) = ColliderMesh::build(source, &BuildOptions::default()).unwrap();
+    let (mesh, _) = ColliderMesh::build(source, &ColliderBuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }
 

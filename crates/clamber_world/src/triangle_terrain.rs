@@ -1,7 +1,9 @@
 use std::sync::Arc;
 
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshError, MeshSource, SurfaceTag};
+use clamber_surface::mesh::{
+    ColliderBuildOptions, ColliderMesh, MeshError, MeshSource, SurfaceTag,
+};
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 use glam::{DVec3, Vec3};
@@ -61,10 +63,10 @@ impl TriangleTerrain {
             tags,
             ..MeshSource::rigid(positions, triangles)
         };
-        let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
+        let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default())?;
         let mut surface = SkinnedSurface::new(Arc::new(mesh));
         let still = Palette::from_matrices([Affine::IDENTITY]);
-        surface.place(&still, Similarity::from_translation(origin))?;
+        surface.teleport(&still, Similarity::from_translation(origin))?;
         surface.advance(&still, Similarity::from_translation(origin))?;
         // A sleeping surface is known to be at rest, so its points do not count as teleported.
         surface.sleep();
@@ -187,7 +189,7 @@ mod tests {
             assert!(p.point.distance(q.point) < 1e-5, "{p:?} {q:?}");
             let motion = triangles.motion(&p.material, 1.0 / 60.0).unwrap();
             assert!(
-                motion.velocity == DVec3::ZERO && !motion.placed,
+                motion.velocity == DVec3::ZERO && !motion.was_teleported,
                 "{motion:?}"
             );
         }

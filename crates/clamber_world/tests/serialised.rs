@@ -8,11 +8,11 @@
 )]
 
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{
-    Attachment, Continuity, Followed, MaterialPoint, Obstacle, ObstacleId, PointMotion,
+    Attachment, Continuity, FollowResult, MaterialPoint, Obstacle, ObstacleId, PointMotion,
     WorldCapsule,
 };
 use glam::{DQuat, DVec3, Vec3};
@@ -50,7 +50,7 @@ fn motion(rng: &mut fastrand::Rng) -> PointMotion {
         position: vector(rng),
         previous_position: vector(rng),
         velocity: vector(rng),
-        placed: rng.bool(),
+        was_teleported: rng.bool(),
         frame: rng.bool().then_some(rotation(rng)),
         turn: rotation(rng),
         area_ratio: any(rng),
@@ -59,9 +59,9 @@ fn motion(rng: &mut fastrand::Rng) -> PointMotion {
 }
 
 /// The result of following an attachment on a triangle that moved by `by` metres along X.
-fn followed(by: f64) -> Followed {
+fn followed(by: f64) -> FollowResult {
     let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default()).unwrap();
     let mut skin = SkinnedSurface::new(mesh.into());
     let place = DVec3::new(0.2, 0.3, 0.4);
     let contact = skin.closest_point(place, 1.0).unwrap();
@@ -75,7 +75,7 @@ fn followed(by: f64) -> Followed {
 type Held = (
     Attachment,
     (PointMotion, Continuity),
-    Followed,
+    FollowResult,
     WorldCapsule,
 );
 
@@ -84,8 +84,8 @@ fn attachments_and_their_motion_keep_every_bit() {
     let mut rng = fastrand::Rng::with_seed(62);
     let ways = [
         Continuity::Moved,
-        Continuity::Placed,
-        Continuity::MovedRepeatedly,
+        Continuity::Teleported,
+        Continuity::SkippedTicks,
     ];
     for round in 0..300 {
         let held: Held = (

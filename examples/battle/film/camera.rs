@@ -51,7 +51,7 @@ impl Views {
     pub(super) fn follow(&mut self, battle: &Battle<'_>) -> Camera {
         let mut skin = self.skin.take().unwrap_or_else(|| battle.surface().clone());
         // If the pose is refused, the last one stays.
-        let _ = skin.place(battle.palette(), *battle.surface().world_from_model());
+        let _ = skin.teleport(battle.palette(), *battle.surface().world_from_model());
         let camera = match self.kind {
             CameraKind::Orbit => {
                 let heading = 0.6 + ORBIT * TICK * battle.tick() as f64;

@@ -7,6 +7,7 @@ use clamber::rig::JointId;
 use clamber_scenes::battle::{Battle, CREATURE, TICK};
 
 use crate::options::OverlayKind;
+use crate::report::skinned_share;
 
 // Linear red, green, blue and opacity. From Okabe and Ito's colours, which colour-blind people can tell apart, and
 // magenta.
@@ -198,8 +199,7 @@ fn state(battle: &Battle<'_>) -> String {
     let state = battle.climber().state();
     let motion = own_point(battle).and_then(|point| battle.surface().motion(&point, TICK));
     let speed = (state.velocity - motion.map_or(DVec3::ZERO, |motion| motion.velocity)).length();
-    let skinned = &battle.skinned;
-    let share = 100.0 * skinned.vertices_skinned as f64 / skinned.vertices.max(1) as f64;
+    let share = 100.0 * skinned_share(battle);
     // A share from 0 to 1 as a bar.
     let bar = |share: f64| format!("[{:<20}]", "#".repeat((share * 20.0).ceil() as usize));
     format!(

@@ -3,7 +3,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use clamber_climber::ClimberConfig;
-use clamber_navigation::{ClimbGraph, GraphConfig, NavigationError};
+use clamber_navigation::{ClimbGraph, GraphConfig};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::{Rig, SurfaceKind, SurfaceTag, TriangleId};
 use clamber_surface::rig::{Clip, Palette, Playback, Pose, RigError, WeakPoint};
@@ -26,15 +26,9 @@ pub struct Creature {
     pub(crate) graphs: Graphs,
 }
 
-/// Graphs, by the fingerprint of the creature, its weak points, climber, height and the rate of clips.
+/// Graphs, by the fingerprint of the creature, its weak points, and the configuration.
 pub(crate) type Graphs = Arc<Mutex<Vec<(GraphKey, Arc<ClimbGraph>)>>>;
-type GraphKey = (
-    u64,
-    Vec<WeakPoint>,
-    ClimberConfig,
-    (f64, f64),
-    Vec<Vec<TriangleId>>,
-);
+type GraphKey = (u64, Vec<WeakPoint>, GraphConfig);
 
 impl Creature {
     /// A creature with an unknown walk speed.
@@ -63,25 +57,14 @@ impl Creature {
         height: f64,
         rate: f64,
         plates: &[Vec<TriangleId>],
-    ) -> Result<Arc<ClimbGraph>, NavigationError> {
-        let mut known = self.graphs.lock().unwrap_or_else(PoisonError::into_inner);
-        let key = (
-            creature_fingerprint(&self.rig.skeleton, &self.rig.clips, &self.rig.collider),
-            self.rig.weak_points.clone(),
-            *climber,
-            (height, rate),
-            plates.to_vec(),
-        );
-        if let Some((_, graph)) = known.iter().find(|(other, _)| *other == key) {
-            return Ok(Arc::clone(graph));
-        }
+    ) -> Result<Arc<ClimbGraph>, SceneError> {
+        let rig = &self.rig;
         let (world_from_model, ground) = self.standing(height)?;
         let is_fur = |tag: &SurfaceTag| tag.kind == SurfaceKind::Fur;
-        let grips = if self.rig.collider.tags().iter().any(is_fur) {
-            vec![SurfaceKind::Fur, SurfaceKind::Stone]
-        } else {
-            vec![SurfaceKind::Skin, SurfaceKind::Fur, SurfaceKind::Stone]
-        };
+        let mut grips = vec![SurfaceKind::Fur, SurfaceKind::Stone];
+        if !rig.collider.tags().iter().any(is_fur) {
+            grips.insert(0, SurfaceKind::Skin);
+        }
         let config = GraphConfig {
             grips,
             world_from_model,
@@ -90,14 +73,20 @@ impl Creature {
             plates: plates.to_vec(),
             ..GraphConfig::new(*climber)
         };
-        let graph = ClimbGraph::build(&self.rig, &config, |_| ControlFlow::Continue(()))?;
+        let body = creature_fingerprint(&rig.skeleton, &rig.clips, &rig.collider);
+        let key = (body, rig.weak_points.clone(), config);
+        let mut known = self.graphs.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, graph)) = known.iter().find(|(other, _)| *other == key) {
+            return Ok(Arc::clone(graph));
+        }
+        let graph = ClimbGraph::build(rig, &key.2, |_| ControlFlow::Continue(()))?;
         let graph = Arc::new(graph);
         known.push((key, Arc::clone(&graph)));
         Ok(graph)
     }
 
     /// Where it stands at rest when it is so many metres tall, and the height of the ground there, metres.
-    pub fn standing(&self, height: f64) -> Result<(Similarity, f64), RigError> {
+    pub fn standing(&self, height: f64) -> Result<(Similarity, f64), SceneError> {
         let rest = self.at_rest()?;
         let low = rest.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
         let high = rest.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
@@ -120,9 +109,9 @@ impl Creature {
     }
 
     /// The positions of all vertices at rest, in model space.
-    pub fn at_rest(&self) -> Result<Vec<Vec3>, RigError> {
+    pub fn at_rest(&self) -> Result<Vec<Vec3>, SceneError> {
         let palette = self.rest_palette()?;
-        Ok(skin(&self.rig.collider, palette.matrices()).unwrap_or_default())
+        Ok(skin(&self.rig.collider, palette.matrices())?)
     }
 
     /// The first clip whose name contains one of `words`. Words must be in lower case, names match in any case,
@@ -143,9 +132,10 @@ impl Creature {
     pub fn bounds(&self, pose: &Pose) -> Result<(Vec3, Vec3), SceneError> {
         let palette = self.rig.skeleton.palette(pose)?;
         let positions = skin(&self.rig.collider, palette.matrices())?;
-        let around = |(low, high): (Vec3, Vec3), p: &Vec3| (low.min(*p), high.max(*p));
-        Ok(positions
-            .iter()
-            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), around))
+        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for position in positions {
+            (low, high) = (low.min(position), high.max(position));
+        }
+        Ok((low, high))
     }
 }

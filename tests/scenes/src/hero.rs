@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clamber_body::clamber_animation::{AnimationSet, ClipId, Layer};
+use clamber_body::clamber_animation::{AnimationSet, Layer};
 use clamber_body::{Body, BodyInput, Figure, Humanoid, OverlayClip};
 use clamber_fight::{ArenaEvent, Fighter, WeaponAction};
 use clamber_surface::geometry::Similarity;
@@ -11,6 +11,7 @@ use clamber_surface::rig::{Palette, Pose, Skeleton};
 use glam::Vec3;
 
 use crate::battle::{Battle, SceneError};
+use crate::giant;
 
 /// The time at which the clip `stab_strike` hits, seconds: its marker `hit`.
 const HIT: f64 = 0.2;
@@ -35,10 +36,7 @@ pub struct Hero {
 
 /// Path of the hero's file.
 pub fn hero_path() -> PathBuf {
-    PathBuf::from(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../assets/hero.glb"
-    ))
+    giant::path().with_file_name("hero.glb")
 }
 
 impl Hero {
@@ -96,14 +94,11 @@ impl Hero {
         if shown != self.shown {
             let act = shown.and_then(|(name, hands)| {
                 let clip = set.find(name)?;
-                let loops = matches!(name, "stab_hold" | "aim");
-                let layer = if loops {
-                    Layer::new(clip)
-                } else {
-                    Layer::once(clip)
+                let mut layer = match name {
+                    "stab_hold" | "aim" => Layer::new(clip),
+                    _ => Layer::once(clip),
                 };
-                let mask = Some(self.figure.upper_body());
-                let layer = Layer { mask, ..layer };
+                layer.mask = Some(self.figure.upper_body());
                 Some(OverlayClip { layer, hands })
             });
             let [quick, usual, end] = FADES;
@@ -144,11 +139,9 @@ fn weapon_clip(
     fighter: &Fighter,
     loosed: f64,
 ) -> Option<(&'static str, Option<f64>)> {
-    let clip = |id: ClipId| set.clip(id).ok();
     let length = |name: &str| {
-        set.find(name)
-            .and_then(clip)
-            .map_or(0.0, |clip| clip.duration())
+        let clip = set.find(name).and_then(|id| set.clip(id).ok());
+        clip.map_or(0.0, |clip| clip.duration())
     };
     let at =
         |name: &'static str, share: f64| Some((name, Some(share.clamp(0.0, 1.0) * length(name))));
@@ -168,10 +161,8 @@ fn weapon_clip(
         }
         WeaponAction::Cut { seconds, .. } => {
             let sword = sword?;
-            at(
-                "swing",
-                seconds / (sword.wind_up + sword.cut + sword.recover),
-            )
+            let whole = sword.wind_up + sword.cut + sword.recover;
+            at("swing", seconds / whole)
         }
         WeaponAction::Draw { drawn } if *drawn < NOCKED => at("draw", drawn / NOCKED),
         WeaponAction::Draw { .. } => Some(("aim", None)),

@@ -93,66 +93,38 @@ pub enum Bound {
 }
 
 impl Bound {
-    fn holds(self, value: f64) -> &'static str {
-        match self {
-            Self::Least(bound) if value >= bound => "yes",
-            Self::Most(bound) if value <= bound => "yes",
-            Self::None => "",
-            _ => "NO",
-        }
-    }
-
-    /// True if a number misses the bound by more than [`FAR`].
-    fn is_far_missed(self, value: f64) -> bool {
-        match self {
-            Self::Least(bound) => value * FAR < bound,
-            Self::Most(bound) => value > bound * FAR,
-            Self::None => false,
-        }
-    }
-
-    fn text(self) -> String {
-        match self {
-            Self::Least(bound) => format!(">= {bound}"),
-            Self::Most(bound) => format!("<= {bound}"),
-            Self::None => String::new(),
-        }
+    /// The bound as text, whether a number keeps it, and true if the number misses it by more than [`FAR`].
+    fn judge(self, value: f64) -> (String, &'static str, bool) {
+        let (sign, bound, holds, is_far_missed) = match self {
+            Self::Least(bound) => (">=", bound, value >= bound, value * FAR < bound),
+            Self::Most(bound) => ("<=", bound, value <= bound, value > bound * FAR),
+            Self::None => return (String::new(), "", false),
+        };
+        let verdict = if holds { "yes" } else { "NO" };
+        (format!("{sign} {bound}"), verdict, is_far_missed)
     }
 }
 
 /// The results of a bench, one row per number: its name, its value, its bound, and whether the bound holds.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Cells {
-    table: Table,
+    rows: Vec<Vec<String>>,
     /// Names of the rows whose bound is missed by far.
     far_missed: Vec<String>,
-}
-
-impl Default for Cells {
-    /// No rows.
-    fn default() -> Self {
-        Self {
-            table: Table::new(&["name", "value", "bound", "holds"]),
-            far_missed: Vec::new(),
-        }
-    }
 }
 
 impl Cells {
     /// Appends a row and prints it.
     pub fn push(&mut self, name: &str, value: f64, bound: Bound) {
         let digits = if value.abs() < 10.0 { 3 } else { 1 };
-        let row = [
-            name.to_owned(),
-            format!("{value:.digits$}"),
-            bound.text(),
-            bound.holds(value).to_owned(),
-        ];
-        println!("{}: {} {} {}", row[0], row[1], row[2], row[3]);
-        if bound.is_far_missed(value) {
+        let number = format!("{value:.digits$}");
+        let (bound, holds, is_far_missed) = bound.judge(value);
+        println!("{name}: {number} {bound} {holds}");
+        if is_far_missed {
             self.far_missed.push(name.to_owned());
         }
-        self.table.push(row.to_vec());
+        let row = vec![name.to_owned(), number, bound, holds.to_owned()];
+        self.rows.push(row);
     }
 
     /// Appends a row without a bound and prints it.
@@ -174,8 +146,12 @@ impl Cells {
     /// # Errors
     /// If a number misses its bound by more than that, or the file cannot be written.
     pub fn finish(self, bench: &str, brief: bool) -> Result<(), Box<dyn Error>> {
-        println!("\n{}", self.table);
-        self.table.write(bench, brief)?;
+        let table = Table {
+            columns: vec!["name", "value", "bound", "holds"],
+            rows: self.rows,
+        };
+        println!("\n{table}");
+        table.write(bench, brief)?;
         if brief || self.far_missed.is_empty() {
             return Ok(());
         }
@@ -253,25 +229,18 @@ impl Table {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)?;
         }
-        let header: Vec<String> = self.columns.iter().map(|c| (*c).to_owned()).collect();
-        let line = |row: &Vec<String>| {
-            let cells: Vec<String> = row.iter().map(|cell| quoted(cell)).collect();
-            cells.join(",") + "\n"
+        // Cells are quoted if needed (RFC 4180).
+        let field = |cell: &String| match cell.contains([',', '"', '\n', '\r']) {
+            true => format!("\"{}\"", cell.replace('"', "\"\"")),
+            false => cell.clone(),
         };
-        let text: String = std::iter::once(&header)
-            .chain(&self.rows)
-            .map(line)
-            .collect();
+        let header: Vec<String> = self.columns.iter().map(|c| (*c).to_owned()).collect();
+        let mut text = String::new();
+        for row in std::iter::once(&header).chain(&self.rows) {
+            let cells: Vec<String> = row.iter().map(field).collect();
+            text += &(cells.join(",") + "\n");
+        }
         std::fs::write(path, text)
-    }
-}
-
-/// A cell as a CSV field, quoted if needed (RFC 4180).
-fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", cell.replace('"', "\"\""))
-    } else {
-        cell.to_owned()
     }
 }
 
@@ -305,10 +274,10 @@ mod tests {
             (Bound::Least(4.0), [5.0, 3.0, 1.1], [0.9, 0.0]),
         ];
         for (bound, near, far) in cases {
-            assert!(near.iter().all(|value| !bound.is_far_missed(*value)));
-            assert!(far.iter().all(|value| bound.is_far_missed(*value)));
+            assert!(near.iter().all(|value| !bound.judge(*value).2));
+            assert!(far.iter().all(|value| bound.judge(*value).2));
         }
-        assert!(!Bound::None.is_far_missed(f64::INFINITY));
+        assert!(!Bound::None.judge(f64::INFINITY).2);
     }
 
     #[test]

@@ -1,6 +1,5 @@
 //! The queries of riders who stand on a walking giant, tick by tick: a workload for benches.
 
-use std::error::Error;
 use std::sync::Arc;
 
 use clamber_surface::geometry::{Capsule, Ray, Similarity, Sphere};
@@ -8,7 +7,7 @@ use clamber_surface::mesh::{ColliderMesh, TriangleId, VertexId};
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::{Anchor, SkinnedSurface};
 
-use crate::Creature;
+use crate::{Creature, SceneError};
 
 /// Ticks a second.
 const RATE: f64 = 60.0;
@@ -58,12 +57,12 @@ impl Workload {
     /// The riders stand on seeded random points of the skin where their body fits at rest. A single
     /// rider takes the one of 64 such points where its body touches nearest to 30 triangles on average
     /// over the walk, so that riders on giants of different resolution do as much work.
-    pub fn new(creature: &Creature, riders: usize, ticks: usize) -> Result<Self, Box<dyn Error>> {
+    pub fn new(creature: &Creature, riders: usize, ticks: usize) -> Result<Self, SceneError> {
         let mesh = creature.rig.collider.clone();
         let mut surface = SkinnedSurface::new(mesh.clone());
         let edge = mean_edge(&mesh);
         let mut rng = fastrand::Rng::with_seed(4);
-        surface.place(&creature.rest_palette()?, Similarity::IDENTITY)?;
+        surface.teleport(&creature.rest_palette()?, Similarity::IDENTITY)?;
         let mut seats = Vec::with_capacity(riders);
         let wanted = if riders == 1 { CHOICES } else { riders };
         while seats.len() < wanted {
@@ -94,10 +93,8 @@ impl Workload {
         for tick in 0..ticks {
             let palette = palette(tick)?;
             surface.advance(&palette, Similarity::IDENTITY)?;
-            let riders = seats
-                .iter()
-                .map(|seat| rider(&surface, seat, edge))
-                .collect::<Result<_, Box<dyn Error>>>()?;
+            let riders = seats.iter().map(|seat| rider(&surface, seat, edge));
+            let riders = riders.collect::<Result<_, SceneError>>()?;
             all.push(Tick { palette, riders });
         }
         Ok(Self { mesh, ticks: all })
@@ -110,7 +107,7 @@ fn fits(surface: &SkinnedSurface, body: &Sphere) -> bool {
     nearest.is_none_or(|hit| hit.distance as f32 > body.radius * (1.0 - 1.5 * DEPTH))
 }
 
-fn rider(surface: &SkinnedSurface, seat: &Anchor, edge: f32) -> Result<Rider, Box<dyn Error>> {
+fn rider(surface: &SkinnedSurface, seat: &Anchor, edge: f32) -> Result<Rider, SceneError> {
     let motion = surface.in_model().motion(seat, 1.0 / RATE)?;
     let above = |radius: f32| Sphere {
         center: motion.position + motion.normal * (radius * (1.0 - DEPTH)),

@@ -25,7 +25,29 @@ impl FallingRocks {
         above: DVec3,
         scale: f64,
     ) -> Result<Self, DebrisError> {
-        let bodies = scatter(world, count, seed, above, scale);
+        let mut rng = fastrand::Rng::with_seed(seed);
+        let scale = scale as f32;
+        let mut between = |low: f32, high: f32| (low + (high - low) * rng.f32()) * scale;
+        let mut bodies = Vec::with_capacity(count);
+        for index in 0..count {
+            let size = between(0.25, 0.7);
+            let shape = match index % 6 {
+                0 => ColliderBuilder::capsule_x(size * 2.0, size * 0.5),
+                1 | 3 => ColliderBuilder::cuboid(size, size * 0.7, size * 0.8),
+                _ => ColliderBuilder::ball(size),
+            };
+            // In layers, so that no rock begins inside another.
+            let (layer, row, column) = (index / 25, (index % 25) / 5, index % 5);
+            let aside = Vector::new(
+                (row as f32 - 2.0) * 2.6 * scale + between(-0.3, 0.3),
+                layer as f32 * 3.0 * scale,
+                (column as f32 - 2.0) * 2.6 * scale + between(-0.3, 0.3),
+            );
+            let place = (above + aside.as_dvec3()).as_vec3();
+            let body = RigidBodyBuilder::dynamic().translation(place);
+            let collider = shape.density(2500.0).friction(0.6);
+            bodies.push(world.insert(body, collider).0);
+        }
         let mut debris = Debris::new(DebrisConfig::default());
         for rock in &bodies {
             debris.add(*rock, &mut world.bodies, &world.colliders)?;
@@ -33,73 +55,18 @@ impl FallingRocks {
         Ok(Self { debris, bodies })
     }
 
-    /// Adds the skin near the rocks to the world, which is about to step by `dt` seconds.
-    pub fn before_step(
-        &mut self,
-        skin: (ObstacleId, &SkinnedSurface),
-        world: &mut PhysicsWorld,
-        dt: f64,
-    ) -> Result<(), DebrisError> {
-        let (bodies, colliders) = (&mut world.bodies, &mut world.colliders);
-        self.debris.before_step(&[skin], bodies, colliders, dt)
-    }
-
-    /// Puts rocks that got into the skin back in front of it, after the world's step.
-    pub fn after_step(
-        &mut self,
-        skin: (ObstacleId, &SkinnedSurface),
-        world: &mut PhysicsWorld,
-        dt: f64,
-    ) -> Result<DebrisReport, DebrisError> {
-        let (broad_phase, narrow_phase) = (&world.broad_phase, &world.narrow_phase);
-        let (bodies, colliders) = (&mut world.bodies, &world.colliders);
-        let debris = &mut self.debris;
-        debris.after_step(&[skin], bodies, colliders, broad_phase, narrow_phase, dt)
-    }
-
-    /// Steps the world with the rocks and the skin near them.
+    /// Steps the world by `dt` seconds, with the rocks and the skin near them.
     pub fn step(
         &mut self,
         skin: (ObstacleId, &SkinnedSurface),
         world: &mut PhysicsWorld,
         dt: f64,
     ) -> Result<DebrisReport, DebrisError> {
-        self.before_step(skin, world, dt)?;
-        world.step_with_events(&self.debris, &());
-        self.after_step(skin, world, dt)
+        let debris = &mut self.debris;
+        debris.before_step(&[skin], &mut world.bodies, &mut world.colliders, dt)?;
+        world.step_with_events(&*debris, &());
+        let (broad_phase, narrow_phase) = (&world.broad_phase, &world.narrow_phase);
+        let (bodies, colliders) = (&mut world.bodies, &world.colliders);
+        debris.after_step(&[skin], bodies, colliders, broad_phase, narrow_phase, dt)
     }
-}
-
-/// The bodies of [`FallingRocks::new`].
-fn scatter(
-    world: &mut PhysicsWorld,
-    count: usize,
-    seed: u64,
-    above: DVec3,
-    scale: f64,
-) -> Vec<RigidBodyHandle> {
-    let mut rng = fastrand::Rng::with_seed(seed);
-    let scale = scale as f32;
-    let mut between = |low: f32, high: f32| (low + (high - low) * rng.f32()) * scale;
-    let mut rocks = Vec::with_capacity(count);
-    for index in 0..count {
-        let size = between(0.25, 0.7);
-        let shape = match index % 6 {
-            0 => ColliderBuilder::capsule_x(size * 2.0, size * 0.5),
-            1 | 3 => ColliderBuilder::cuboid(size, size * 0.7, size * 0.8),
-            _ => ColliderBuilder::ball(size),
-        };
-        // In layers, so that no rock begins inside another.
-        let (layer, row, column) = (index / 25, (index % 25) / 5, index % 5);
-        let aside = Vector::new(
-            (row as f32 - 2.0) * 2.6 * scale + between(-0.3, 0.3),
-            layer as f32 * 3.0 * scale,
-            (column as f32 - 2.0) * 2.6 * scale + between(-0.3, 0.3),
-        );
-        let place = (above + aside.as_dvec3()).as_vec3();
-        let body = RigidBodyBuilder::dynamic().translation(place);
-        let collider = shape.density(2500.0).friction(0.6);
-        rocks.push(world.insert(body, collider).0);
-    }
-    rocks
 }

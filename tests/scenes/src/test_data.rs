@@ -112,8 +112,6 @@ pub fn five_creatures(test: &str) -> Result<Vec<Creature>, SceneError> {
 /// # Panics
 /// As [`file()`].
 pub fn five_models(test: &str) -> Vec<PathBuf> {
-    let paths = FIVE_MODELS
-        .iter()
-        .map(|name| file(test, &format!("models/{name}")));
-    paths.flatten().collect()
+    let path = |name: &str| file(test, &format!("models/{name}"));
+    FIVE_MODELS.into_iter().filter_map(path).collect()
 }

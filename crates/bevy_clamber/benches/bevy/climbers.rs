@@ -77,7 +77,7 @@ pub(crate) fn measure(
         .rig
         .skeleton
         .palette_into(&poses[0], &mut palette)?;
-    surface.place(&palette, Similarity::IDENTITY)?;
+    surface.teleport(&palette, Similarity::IDENTITY)?;
     let mut climbers = spawn(&mut giants, &surface, count)?;
     let (mut core, mut bevy, mut frames) = (Vec::new(), Vec::new(), Vec::new());
     let mut busy = 0;

@@ -31,13 +31,11 @@ pub(super) fn step(
     }
     let mut inputs = vec![Input::IDLE; fight.fighters().len()];
     for (fighter, mut input, mut latched) in &mut fighters {
-        let taken = latched.take(input.bypass_change_detection());
+        // The arena deals the blows itself.
+        let (taken, _) = latched.take(input.bypass_change_detection());
         let all = fight.fighters();
         if let Ok(index) = all.binary_search_by_key(&fighter.0, Fighter::id) {
-            inputs[index] = Input {
-                blow: None,
-                ..taken
-            };
+            inputs[index] = taken;
         }
     }
     let (arena, orders) = fight.take();

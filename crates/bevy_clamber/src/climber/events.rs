@@ -185,7 +185,7 @@ pub(super) fn tell_event(event: &ClimberEvent, told: &Told<'_>, commands: &mut C
                 support: supports(from),
             },
         ),
-        ClimberEvent::MovedRepeatedly { obstacle } => tell(
+        ClimberEvent::SkippedTicks { obstacle } => tell(
             commands,
             ClimberSupportMovedRepeatedly {
                 entity,

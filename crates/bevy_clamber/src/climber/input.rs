@@ -2,7 +2,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use bevy_time::{Time, Virtual};
-use clamber_climber::Blow;
+use clamber_climber::Knockback;
 use clamber_world::ObstacleId;
 
 /// What the player of a [`Climber`](crate::Climber) asks for. Any input crate, network or bot can fill it, in any
@@ -98,25 +98,29 @@ impl LatchedInput {
         }
     }
 
-    /// The input of a tick. Presses and blows are used up.
-    pub(crate) fn take(&mut self, input: &mut ClimberInput) -> clamber_climber::ClimberInput {
+    /// The input of a tick, and the blow that struck the climber before it. Presses and blows are used up.
+    pub(crate) fn take(
+        &mut self,
+        input: &mut ClimberInput,
+    ) -> (clamber_climber::ClimberInput, Option<Knockback>) {
         self.latch(input);
         let latched = std::mem::take(self);
-        clamber_climber::ClimberInput {
+        let knockback = latched.blow.map(|blow| Knockback {
+            velocity: blow.velocity.as_dvec3(),
+            damage: blow.damage.into(),
+            by: blow.by.map(|by| ObstacleId(by.to_bits())),
+        });
+        let taken = clamber_climber::ClimberInput {
             walk: input.walk.as_dvec3(),
             climb: input.climb.as_dvec3(),
             jump: latched.jump,
             jump_held: latched.jump_held,
             grip: latched.grip,
             crouch: latched.crouch,
-            blow: latched.blow.map(|blow| Blow {
-                velocity: blow.velocity.as_dvec3(),
-                damage: blow.damage.into(),
-                by: blow.by.map(|by| ObstacleId(by.to_bits())),
-            }),
             actions: latched.actions,
             aim: input.aim.as_dvec3(),
-        }
+        };
+        (taken, knockback)
     }
 }
 

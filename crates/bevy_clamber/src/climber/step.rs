@@ -119,7 +119,7 @@ impl ClimberBody {
             heading: level(to.rotation, config.up(), was.heading),
             stamina: was.stamina,
             hit_points: was.hit_points,
-            memory: was.memory,
+            custom_slots: was.custom_slots,
             ..*new.state()
         };
         if self.climber.restore(begin).is_ok() {
@@ -172,7 +172,7 @@ pub(super) fn step_climbers(
     let step = |mut stepped: SteppedItem<'_, '_>| {
         let entity = stepped.entity;
         let body = &mut *stepped.body;
-        let input = stepped
+        let (input, knockback) = stepped
             .latched
             .take(stepped.input.bypass_change_detection());
         let rule = stepped.rule.or(rule.as_deref());
@@ -190,6 +190,7 @@ pub(super) fn step_climbers(
             modes: &modes,
             id: Some(ObstacleId(entity.to_bits())),
             air_velocity: air.0,
+            knockback,
         };
         let gone = body.lost_point(&touchable);
         body.forget_jump(&touchable);

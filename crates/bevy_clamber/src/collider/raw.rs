@@ -1,6 +1,8 @@
 use bevy_mesh::{Indices, Mesh, MeshAccessError, PrimitiveTopology, VertexAttributeValues};
 use bevy_shape::{Aabb3d, BoundingVolume};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceTag};
+use clamber_surface::mesh::{
+    ColliderBuildOptions, ColliderMesh, Influence, MeshSource, SurfaceTag,
+};
 use clamber_surface::rig::JointId;
 use glam::Vec3;
 use std::sync::Arc;
@@ -53,7 +55,7 @@ impl RawMesh {
             joint_count,
             ..MeshSource::default()
         };
-        let (mesh, report) = ColliderMesh::build(&source, &BuildOptions::default())?;
+        let (mesh, report) = ColliderMesh::build(&source, &ColliderBuildOptions::default())?;
         Ok(BuiltCollider {
             mesh: Arc::new(mesh),
             source_triangles: report.source_triangles,

@@ -1,6 +1,6 @@
 use bevy_asset::Handle;
 use bevy_ecs::prelude::*;
-use clamber_colossus::{Creature, CreatureState, Wound};
+use clamber_colossus::{Creature, CreatureState};
 use clamber_world::Obstacle;
 use glam::DVec3;
 
@@ -89,11 +89,7 @@ impl ColossusBody {
     pub fn strike(&mut self, place: DVec3, damage: f64, reach: f64) -> f64 {
         let near = self.creature.surface().closest_point(place, reach);
         near.map_or(0.0, |near| {
-            self.creature.hurt(&Wound {
-                place,
-                at: near.material,
-                damage,
-            })
+            self.creature.hurt(&near.material, place, damage)
         })
     }
 

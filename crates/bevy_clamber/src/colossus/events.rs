@@ -4,7 +4,7 @@ use bevy_app::App;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
-use clamber_colossus::{Blow, Creature, CreatureEvent};
+use clamber_colossus::{Creature, CreatureEvent, StrikeHit};
 use glam::DVec3;
 
 macro_rules! events {
@@ -205,7 +205,7 @@ pub(super) fn tell_all(
 pub(super) fn tell_struck(
     (entity, climber): (Entity, Entity),
     creature: &Creature,
-    blow: &Blow,
+    blow: &StrikeHit,
     origin: DVec3,
     commands: &mut Commands<'_, '_>,
 ) {

@@ -190,7 +190,7 @@ fn strike(
         let (Some(hit), Ok((body, mut input))) = (hit, climbers.get_mut(*entity)) else {
             continue;
         };
-        let Some(blow) = body.climber().blow_of(hit.impulse, None) else {
+        let Some(blow) = body.climber().knockback_of(hit.impulse, None) else {
             continue;
         };
         let collider = colliders.get(RapierTerrain::collider_of(&hit.material));

@@ -21,7 +21,7 @@ impl FrameClock {
 
     /// True if that is not one tick later than the time which the last tick saw.
     pub(crate) fn jumped(&self) -> bool {
-        self.0.motion() == PoseMotion::Placed
+        self.0.motion() == PoseMotion::Teleported
     }
 }
 

@@ -75,7 +75,7 @@ impl DrawnSurface {
             let mut posed = known
                 .take()
                 .unwrap_or_else(|| SkinnedSurface::clone(surface));
-            posed.place(palette, placed).ok()?;
+            posed.teleport(palette, placed).ok()?;
             Some(posed)
         });
         posed.as_ref()
@@ -118,7 +118,7 @@ impl DrawnSurface {
             self.history.stay(time, drawn);
         } else {
             let motion = if is_cut {
-                PoseMotion::Placed
+                PoseMotion::Teleported
             } else {
                 PoseMotion::Moved
             };

@@ -265,7 +265,8 @@ impl PosedSurface {
             .rig
             .compose(next, &mut scratch.model_from_node, &mut scratch.palette);
         let world_from_model = placed.ok_or(PoseError::Placement)?;
-        let jumps = timing.follows_frames() && (clock.jumped() || at.motion == PoseMotion::Placed);
+        let jumps =
+            timing.follows_frames() && (clock.jumped() || at.motion == PoseMotion::Teleported);
         let limit = f64::from(timing.max_speed) * dt;
         let farthest = self.farthest(&world_from_model, limit);
         let is_teleport = farthest > limit && dt > 0.0;
@@ -275,7 +276,7 @@ impl PosedSurface {
         let restart = self.restart || jumps || is_teleport;
         if restart {
             self.surface
-                .place(&self.scratch.palette, world_from_model)?;
+                .teleport(&self.scratch.palette, world_from_model)?;
         } else {
             self.surface
                 .advance(&self.scratch.palette, world_from_model)?;

@@ -160,7 +160,7 @@ fn meshes_have_the_tags_and_materials_of_the_file() {
         assert!(surface.mesh().tags().iter().all(|found| *found == tag));
         kinds.insert(tag);
     }
-    // Fur, skin, stone, ledges, the shell.
+    // Fur, skin, stone, ledges of stone, the shell.
     assert_eq!(kinds.len(), 5);
 }
 

@@ -73,7 +73,7 @@ fn extras_of_materials_tag_the_giant() {
         ("fur", SurfaceTag::new(SurfaceKind::Fur)),
         ("hide", SurfaceTag::new(SurfaceKind::Skin)),
         ("stone", stone),
-        ("stone_ledge", stone),
+        ("stone_ledge", stone.with_user(2)),
         ("shell", stone.with_user(1)),
         ("glow", stone),
     ] {

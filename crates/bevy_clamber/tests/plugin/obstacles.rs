@@ -494,7 +494,7 @@ fn a_stopped_body_has_zero_velocity_and_a_missing_one_no_motion() {
         let motion = ask_avian(&mut avian, move |obstacle| obstacle.motion(&material, 0.1));
         assert_eq!(motion.unwrap().velocity, DVec3::ZERO, "after {ticks} ticks");
     }
-    let body = move |obstacle: &dyn Obstacle| obstacle.body_of(&material);
+    let body = move |obstacle: &dyn Obstacle| obstacle.rigid_body_id(&material);
     assert_eq!(ask_avian(&mut avian, body), carousel.to_bits());
     // With another shape the point is gone; with the first shape it is back.
     let shape = avian.world().get::<Collider>(carousel).cloned();

@@ -94,7 +94,7 @@ fn blend(
                 found.set_if_neq(transform(local));
             }
         }
-        if let (PoseMotion::Placed, Some(mut surface)) = (motion, surface) {
+        if let (PoseMotion::Teleported, Some(mut surface)) = (motion, surface) {
             surface.forget_motion();
         }
     }

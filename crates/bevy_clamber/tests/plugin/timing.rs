@@ -369,7 +369,7 @@ fn a_pose_that_is_set_by_hand_lasts_until_the_next_tick() {
     );
     let far =
         bevy_clamber::clamber_surface::geometry::Similarity::from_translation(glam::DVec3::X * 9.0);
-    surface.surface_mut().place(&palette, far).unwrap();
+    surface.surface_mut().teleport(&palette, far).unwrap();
     app.update();
     let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
     assert_eq!(surface.world_from_model().translation.x, 0.0);

@@ -5,7 +5,9 @@ use clamber_body::{Body, BodyError, BodyInput, Extremity, OverlayClip, Side};
 use clamber_climber::{Climber, ClimberConfig, ClimberInput, StepRules};
 use clamber_scenes::bodies::{self, Stage};
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, TriangleId};
+use clamber_surface::mesh::{
+    ColliderBuildOptions, ColliderMesh, Influence, MeshSource, TriangleId,
+};
 use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
@@ -51,11 +53,13 @@ fn wall() -> SkinnedSurface {
         joint_count: 2,
         ..MeshSource::default()
     };
-    let mesh = ColliderMesh::build(&source, &BuildOptions::default())
+    let mesh = ColliderMesh::build(&source, &ColliderBuildOptions::default())
         .unwrap()
         .0;
     let mut surface = SkinnedSurface::new(mesh.into());
-    surface.place(&palette(0.0), Similarity::IDENTITY).unwrap();
+    surface
+        .teleport(&palette(0.0), Similarity::IDENTITY)
+        .unwrap();
     surface
 }
 

@@ -60,14 +60,11 @@ fn clamber(arguments: &[&str]) -> Output {
 /// output otherwise.
 fn said(arguments: &[&str], code: i32) -> String {
     let ended = clamber(arguments);
-    let bytes = if code == 2 {
-        ended.stderr
-    } else {
-        ended.stdout
-    };
-    let text = String::from_utf8(bytes).unwrap();
-    assert_eq!(ended.status.code(), Some(code), "{arguments:?}: {text}");
-    text
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+    let (output, errors) = (text(&ended.stdout), text(&ended.stderr));
+    let found = ended.status.code();
+    assert_eq!(found, Some(code), "{arguments:?}: {output}{errors}");
+    if code == 2 { errors } else { output }
 }
 
 /// Compares a recording with others. Each row has another recording, the code that the command ends with, and what it

@@ -58,7 +58,7 @@ const SLOPE_HYSTERESIS: f64 = 0.035;
 
 impl GroundConfig {
     /// Steepest slope that a climber which stands already stays on, radians from level.
-    pub fn stays_on_slope(&self) -> f64 {
+    pub fn release_slope(&self) -> f64 {
         self.max_slope + SLOPE_HYSTERESIS
     }
 

@@ -69,7 +69,7 @@ pub struct HealthConfig {
     pub safe_speed: f64,
     /// Hit points that a landing costs for each metre a second by which it is faster than `safe_speed`, not negative.
     /// Default 0.05: a landing at 12 m/s takes an unhurt climber from 1 to 0.9. A blow costs its own
-    /// [`Blow::damage`](crate::Blow::damage) instead.
+    /// [`Knockback::damage`](crate::Knockback::damage) instead.
     pub fall_damage: f64,
 }
 

@@ -25,7 +25,7 @@ impl ClimberState {
             hash.numbers(velocity.to_array());
         }
         hash.numbers(self.numbers());
-        hash.numbers(self.memory);
+        hash.numbers(self.custom_slots);
         let flags = [
             self.crouched,
             self.flying.jumping,

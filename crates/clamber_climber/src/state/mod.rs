@@ -61,7 +61,7 @@ pub struct ClimberState {
     /// ([`GroundConfig::jump_buffer`](crate::GroundConfig::jump_buffer)).
     pub jump_buffer: f64,
     /// Time left in which the climber grips nothing after it let go, seconds.
-    pub open_handed: f64,
+    pub grip_cooldown: f64,
     /// Time since the climber last touched an obstacle, seconds, counted up to 2. 0 while it has a support.
     pub untouched: f64,
     /// True if the body is the ball alone although [`BodyConfig::height`](crate::BodyConfig::height) is not 0: the
@@ -83,11 +83,11 @@ pub struct ClimberState {
     /// Memory of [`ClimberMode::LedgeHanging`].
     pub ledge_hanging: LedgeHangingMemory,
     /// Memory of the game's custom modes, such as timers and directions; kept in every mode. Any finite values.
-    pub memory: [f64; MEMORY],
+    pub custom_slots: [f64; CUSTOM_SLOTS],
 }
 
 /// Number of values that a game's custom modes can remember, together.
-pub const MEMORY: usize = 8;
+pub const CUSTOM_SLOTS: usize = 8;
 
 /// Largest difference of the heading's length from 1, so that a state can be saved with rounded decimals.
 const UNIT_TOLERANCE: f64 = 1e-6;
@@ -104,7 +104,7 @@ const NUMBER_NAMES: [&str; 13] = [
     "tumbling.down",
     "coyote",
     "jump_buffer",
-    "open_handed",
+    "grip_cooldown",
     "untouched",
     "load",
 ];
@@ -126,7 +126,7 @@ impl ClimberState {
             hit_points: 1.0,
             coyote: 0.0,
             jump_buffer: 0.0,
-            open_handed: 0.0,
+            grip_cooldown: 0.0,
             untouched: 0.0,
             crouched: false,
             crushed: false,
@@ -136,7 +136,7 @@ impl ClimberState {
             holding: HoldingMemory::default(),
             hanging: HangingMemory::default(),
             ledge_hanging: LedgeHangingMemory::default(),
-            memory: [0.0; MEMORY],
+            custom_slots: [0.0; CUSTOM_SLOTS],
         }
     }
 
@@ -212,7 +212,7 @@ impl ClimberState {
             self.tumbling.down,
             self.coyote,
             self.jump_buffer,
-            self.open_handed,
+            self.grip_cooldown,
             self.untouched,
             self.load,
         ]
@@ -222,7 +222,7 @@ impl ClimberState {
         // Zero times a number is zero, unless the number is infinite or NaN: one test for all of them.
         let vectors = self.vectors();
         let vectors = vectors.iter().fold(DVec3::ZERO, |sum, v| sum + *v * 0.0);
-        let numbers = self.memory.iter().fold(0.0, |sum, x| sum + x * 0.0);
+        let numbers = self.custom_slots.iter().fold(0.0, |sum, x| sum + x * 0.0);
         let numbers = self.numbers().iter().fold(numbers, |sum, x| sum + x * 0.0);
         vectors == DVec3::ZERO
             && numbers == 0.0

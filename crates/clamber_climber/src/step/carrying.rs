@@ -62,10 +62,10 @@ impl Tick<'_> {
             return;
         };
         let motion = followed.motion;
-        let was_placed = followed.continuity == Continuity::Placed;
-        if followed.continuity == Continuity::MovedRepeatedly {
+        let was_placed = followed.continuity == Continuity::Teleported;
+        if followed.continuity == Continuity::SkippedTicks {
             let obstacle = support.attachment.obstacle;
-            self.event(ClimberEvent::MovedRepeatedly { obstacle });
+            self.event(ClimberEvent::SkippedTicks { obstacle });
         }
         let velocity_before = self.state.support_velocity.filter(|_| !was_placed);
         self.feel(&motion, was_placed);

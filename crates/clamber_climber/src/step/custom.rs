@@ -5,8 +5,10 @@ use glam::DVec3;
 
 use super::Tick;
 use super::moving::Intent;
-use crate::state::MEMORY;
-use crate::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, ContactRule};
+use crate::state::CUSTOM_SLOTS;
+use crate::{
+    ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, ContactRule, Knockback,
+};
 
 /// The mode after a handler has run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +23,7 @@ pub enum NextMode {
 /// A custom mode: a mode of the game's own, such as a dash, a vault, a wall run or swimming.
 ///
 /// Handlers are given to every [`Climber::step_with`](crate::Climber::step_with), and keep no state of their own. A
-/// mode stores what it remembers in [`ModeContext::memory`], which is part of the climber's state, so that it is
+/// mode stores what it remembers in [`ModeContext::custom_slots`], which is part of the climber's state, so that it is
 /// recorded, saved and rolled back with it.
 pub trait CustomMode {
     /// Id of the mode, unique among the game's modes. The climber's mode is [`ClimberMode::Custom`] with this id.
@@ -33,7 +35,7 @@ pub trait CustomMode {
     /// moves. Modes are asked in the order in which they are given; after one begins, the rest are not asked in that
     /// tick.
     ///
-    /// This is also the place to count down a timer such as a cooldown, kept in [`ModeContext::memory`]. The timer
+    /// This is also the place to count down a timer such as a cooldown, kept in [`ModeContext::custom_slots`]. The timer
     /// misses the ticks in which an earlier mode in the list begins. While the mode itself runs, count in
     /// [`CustomMode::step`].
     fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool;
@@ -80,6 +82,11 @@ impl<'a> ModeContext<'_, 'a> {
         self.tick.input
     }
 
+    /// The blow that struck the climber since the last tick.
+    pub fn knockback(&self) -> Option<&Knockback> {
+        self.tick.rules.knockback.as_ref()
+    }
+
     /// The climber's configuration.
     pub fn config(&self) -> &ClimberConfig {
         self.tick.config
@@ -107,8 +114,8 @@ impl<'a> ModeContext<'_, 'a> {
 
     /// The numbers that the game's modes remember. All modes share them. After a value that is not finite, the whole
     /// tick is undone and [`ClimberEvent::NotFinite`] is reported.
-    pub fn memory(&mut self) -> &mut [f64; MEMORY] {
-        &mut self.tick.state.memory
+    pub fn custom_slots(&mut self) -> &mut [f64; CUSTOM_SLOTS] {
+        &mut self.tick.state.custom_slots
     }
 
     /// The body's shape at this point of the tick.

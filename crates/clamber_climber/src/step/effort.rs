@@ -5,7 +5,7 @@ use clamber_world::{ObstacleId, PointMotion};
 use glam::DVec3;
 
 use super::air::nearest_between;
-use super::holding::OPEN_HANDED;
+use super::holding::GRIP_COOLDOWN;
 use super::{NextMode, Tick};
 use crate::config::StaminaConfig;
 use crate::{ClimberEvent, ClimberMode, Shake};
@@ -14,7 +14,7 @@ use crate::{ClimberEvent, ClimberMode, Shake};
 const EXHAUSTED_TIME: f64 = 1.0;
 
 impl Tick<'_> {
-    /// Applies the blow of this tick's input.
+    /// Applies the blow that struck the climber since the last tick.
     ///
     /// A blow faster than the knock speed knocks the climber over, if it can tumble. For other blows:
     ///
@@ -24,7 +24,7 @@ impl Tick<'_> {
     /// - A blow faster than a jump off a hold takes a climber off its hold or ledge. A slower one makes it swing from
     ///   its hold, and does nothing to a climber that hangs from a ledge.
     pub(super) fn be_struck(&mut self) {
-        let Some(blow) = self.input.blow else {
+        let Some(blow) = self.rules.knockback else {
             return;
         };
         self.hurt(blow.damage);
@@ -80,7 +80,7 @@ impl Tick<'_> {
 
     /// Leaves the support because of a blow, with the climber's current velocity.
     pub(super) fn be_knocked_off(&mut self) -> NextMode {
-        let by = self.input.blow.and_then(|blow| blow.by);
+        let by = self.rules.knockback.and_then(|blow| blow.by);
         if let Some(from) = self.attachment() {
             self.event(ClimberEvent::KnockedOff { from, by });
         }
@@ -132,7 +132,7 @@ impl Tick<'_> {
         if speed <= fastest && self.spend(|stamina| stamina.catch_cost * hard) {
             return true;
         }
-        self.state.open_handed = OPEN_HANDED;
+        self.state.grip_cooldown = GRIP_COOLDOWN;
         self.event(ClimberEvent::HandsSlipped {
             obstacle: touch.obstacle,
             speed,
@@ -175,7 +175,7 @@ impl Tick<'_> {
         if let Some(from) = self.attachment() {
             self.event(ClimberEvent::ShakenOff { shake, from });
         }
-        self.state.open_handed = EXHAUSTED_TIME;
+        self.state.grip_cooldown = EXHAUSTED_TIME;
         let next = self.leave(ClimberMode::Falling);
         self.follow_at_once(next);
     }

@@ -8,7 +8,7 @@ use super::Tick;
 impl Tick<'_> {
     /// The steepest slope that a standing climber stays on, radians.
     pub(super) fn standing_slope(&self) -> f64 {
-        self.config.ground.stays_on_slope()
+        self.config.ground.release_slope()
     }
 
     /// A probe for ground up to `reach` below the feet, for the body at its current height.

@@ -4,7 +4,7 @@ use clamber_mover::{Arm, MovePlane, Moved, Path};
 use glam::DVec3;
 
 use super::carrying::Carried;
-use super::holding::OPEN_HANDED;
+use super::holding::GRIP_COOLDOWN;
 use super::moving::Intent;
 use super::{NextMode, Tick};
 use crate::config::GripConfig;
@@ -52,7 +52,7 @@ impl Tick<'_> {
         }
         if !self.input.grip {
             self.event(ClimberEvent::Released);
-            self.state.open_handed = OPEN_HANDED;
+            self.state.grip_cooldown = GRIP_COOLDOWN;
             self.state.velocity = self.was;
             return self.leave(ClimberMode::Falling);
         }
@@ -146,7 +146,7 @@ impl Tick<'_> {
         let reach = moved.position.distance(pivot);
         if reach > longest {
             // An obstacle in the way has torn the climber off.
-            self.state.open_handed = OPEN_HANDED;
+            self.state.grip_cooldown = GRIP_COOLDOWN;
             return self.lose_footing();
         }
         if self.state.hanging.calm >= calm_time && reach <= CLIMB_AGAIN_DISTANCE * radius {

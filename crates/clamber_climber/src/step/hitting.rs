@@ -111,7 +111,10 @@ impl Tick<'_> {
     fn met_again(&self, touch: &MoverContact) -> Option<(f64, f64)> {
         let normal = touch.normal;
         let is_known = self.presses_on(normal) && self.was_touched(touch);
-        let blow = self.input.blow.map_or(DVec3::ZERO, |blow| blow.velocity);
+        let blow = self
+            .rules
+            .knockback
+            .map_or(DVec3::ZERO, |blow| blow.velocity);
         let is_struck = -blow.dot(normal) > self.rests_at();
         let now = self.mover.velocity_of(touch).dot(normal);
         let before = if self.slips() {

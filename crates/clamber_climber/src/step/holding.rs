@@ -17,7 +17,7 @@ const DRAW_SPEED_FACTOR: f64 = 8.0 / 3.0;
 const DRAW_TIME: f64 = 0.4;
 
 /// Time for which the climber grips nothing after it jumped off a hold, let go or was torn off, seconds.
-pub(super) const OPEN_HANDED: f64 = 0.3;
+pub(super) const GRIP_COOLDOWN: f64 = 0.3;
 
 /// Angle between the normals of two faces, above which they meet in a corner, radians: 40 degrees.
 const CORNER_ANGLE: f64 = 0.7;
@@ -66,7 +66,7 @@ impl Tick<'_> {
     /// Takes hold of the best grip in reach, or catches a ledge, if the input asks for it, stamina is left and the
     /// climber's hands are ready.
     pub(super) fn grip_or_catch(&mut self) -> Option<NextMode> {
-        if !self.input.grip || self.state.stamina == 0.0 || self.state.open_handed > 0.0 {
+        if !self.input.grip || self.state.stamina == 0.0 || self.state.grip_cooldown > 0.0 {
             return None;
         }
         let place = self.place();
@@ -153,7 +153,7 @@ impl Tick<'_> {
         if self.config.slope(carried.normal()) <= self.config.ground.max_slope {
             return NextMode::Change(ClimberMode::Standing);
         }
-        self.state.open_handed = OPEN_HANDED;
+        self.state.grip_cooldown = GRIP_COOLDOWN;
         self.leave(ClimberMode::Falling)
     }
 
@@ -169,7 +169,7 @@ impl Tick<'_> {
         self.state.velocity += direction * speed;
         self.push_off();
         self.begin_jump();
-        self.state.open_handed = OPEN_HANDED;
+        self.state.grip_cooldown = GRIP_COOLDOWN;
         self.leave(ClimberMode::Falling)
     }
 
@@ -250,7 +250,7 @@ impl Tick<'_> {
 
     /// Loses the hold, because an obstacle has pushed the climber farther away than its arms reach, or crushed it.
     pub(super) fn be_torn_off(&mut self, carried: &Carried) -> NextMode {
-        self.state.open_handed = OPEN_HANDED;
+        self.state.grip_cooldown = GRIP_COOLDOWN;
         // The velocity excludes the push by the obstacle.
         self.state.velocity = carried.velocity();
         self.lose_footing()

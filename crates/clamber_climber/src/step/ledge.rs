@@ -8,7 +8,7 @@ use clamber_mover::{Ledge, LedgeProbe, Moved};
 use glam::DVec3;
 
 use super::carrying::Carried;
-use super::holding::OPEN_HANDED;
+use super::holding::GRIP_COOLDOWN;
 use super::{NextMode, Tick};
 use crate::config::LedgeConfig;
 use crate::{ClimberEvent, ClimberMode};
@@ -115,7 +115,7 @@ impl Tick<'_> {
         }
         if !self.input.grip {
             self.event(ClimberEvent::Released);
-            self.state.open_handed = OPEN_HANDED;
+            self.state.grip_cooldown = GRIP_COOLDOWN;
             return self.leave(ClimberMode::Falling);
         }
         if self.state.jump_buffer > 0.0 && self.spend(|stamina| stamina.jump_cost) {

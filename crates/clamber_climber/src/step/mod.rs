@@ -241,7 +241,7 @@ impl<'a> Tick<'a> {
         } else {
             (self.state.jump_buffer - dt).max(0.0)
         };
-        self.state.open_handed = (self.state.open_handed - dt).max(0.0);
+        self.state.grip_cooldown = (self.state.grip_cooldown - dt).max(0.0);
     }
 
     /// Runs handlers until a mode stays or the body has been moved.

@@ -284,14 +284,15 @@ impl Tick<'_> {
             return 0.0;
         }
         let (obstacle, material) = (attachment.obstacle, &attachment.material);
-        self.mover.push_response(obstacle, material, direction)
+        self.mover
+            .inverse_effective_mass(obstacle, material, direction)
     }
 
     /// The speed along a unit vector that a contact gains from an impulse of 1 N s in this direction.
     pub(super) fn response_at(&self, touch: &MoverContact, direction: DVec3) -> f64 {
         let material = &touch.contact.material;
         self.mover
-            .push_response(touch.obstacle, material, direction)
+            .inverse_effective_mass(touch.obstacle, material, direction)
     }
 
     /// True for contacts that the climber stands on or holds: its support, and while it stands, all contacts that are

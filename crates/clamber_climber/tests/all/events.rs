@@ -45,5 +45,5 @@ pub(crate) fn is_turned_corner(event: &ClimberEvent) -> bool {
 }
 
 pub(crate) fn is_moved_twice(event: &ClimberEvent) -> bool {
-    matches!(event, ClimberEvent::MovedRepeatedly { .. })
+    matches!(event, ClimberEvent::SkippedTicks { .. })
 }

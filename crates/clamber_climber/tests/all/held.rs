@@ -26,7 +26,7 @@ impl<T: Obstacle> Obstacle for Held<T> {
         self.0.motion(point, dt)
     }
 
-    fn push_response(&self, _: &MaterialPoint, _: DVec3) -> f64 {
+    fn inverse_effective_mass(&self, _: &MaterialPoint, _: DVec3) -> f64 {
         1.0 / self.1
     }
 }

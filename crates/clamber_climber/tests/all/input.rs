@@ -1,6 +1,6 @@
 //! Inputs of a tick.
 
-use clamber_climber::{Blow, ClimberInput};
+use clamber_climber::{ClimberInput, Knockback};
 use glam::DVec3;
 
 /// No input.
@@ -37,15 +37,11 @@ pub(crate) const fn grip_climb(climb: DVec3) -> ClimberInput {
     ClimberInput { climb, ..HOLD }
 }
 
-/// An input with a blow that changes the velocity and does no damage.
-pub(crate) const fn struck(velocity: DVec3, input: ClimberInput) -> ClimberInput {
-    let blow = Blow {
+/// A blow that changes the velocity and does no damage.
+pub(crate) const fn blow(velocity: DVec3) -> Option<Knockback> {
+    Some(Knockback {
         velocity,
         damage: 0.0,
         by: None,
-    };
-    ClimberInput {
-        blow: Some(blow),
-        ..input
-    }
+    })
 }

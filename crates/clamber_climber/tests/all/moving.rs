@@ -52,7 +52,7 @@ impl Obstacle for MovingHalfSpace {
         let at = DVec3::from(point.coordinates);
         let [before, now] = self.shifts.map(|shift| at + shift);
         Some(PointMotion {
-            placed: false,
+            was_teleported: false,
             ..PointMotion::translated(before, now, dt)
         })
     }

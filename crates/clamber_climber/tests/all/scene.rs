@@ -6,7 +6,9 @@ use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
 };
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource, SurfaceKind, SurfaceTag};
+use clamber_surface::mesh::{
+    ColliderBuildOptions, ColliderMesh, MeshSource, SurfaceKind, SurfaceTag,
+};
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
@@ -82,7 +84,7 @@ pub(crate) fn tagged(
         tags,
         ..MeshSource::rigid(positions, triangles)
     };
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }
 
@@ -93,7 +95,7 @@ pub(crate) fn placed(surface: &mut SkinnedSurface, translation: DVec3) {
 
 pub(crate) fn placed_turned(surface: &mut SkinnedSurface, translation: DVec3, rotation: DQuat) {
     let place = similarity(translation, rotation);
-    surface.place(&rest(), place).unwrap();
+    surface.teleport(&rest(), place).unwrap();
 }
 
 /// Moves a surface within a tick.
@@ -118,7 +120,7 @@ pub(crate) fn scaled_down(surface: &mut SkinnedSurface) {
         scale: 0.1,
         ..*surface.world_from_model()
     };
-    surface.place(&rest(), world_from_model).unwrap();
+    surface.teleport(&rest(), world_from_model).unwrap();
 }
 
 /// The pose of a surface's only joint.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use clamber_surface::geometry::{Affine, rotation_from_axis_angle};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::{
     Channel, Clip, Interpolation, Joint, JointId, Keyframes, Skeleton, Transform,
 };
@@ -94,7 +94,7 @@ pub(crate) fn ground() -> Arc<ColliderMesh> {
 }
 
 fn build(source: &MeshSource<'_>) -> Arc<ColliderMesh> {
-    let (mesh, _) = ColliderMesh::build(source, &BuildOptions::default()).unwrap();
+    let (mesh, _) = ColliderMesh::build(source, &ColliderBuildOptions::default()).unwrap();
     Arc::new(mesh)
 }
 

@@ -49,7 +49,7 @@ fn play_on_these_threads(run: &mut GoldenRun, level: SimdLevel) {
     let mut floor = SkinnedSurface::with_simd_level(ground(), level);
     let under = Similarity::from_translation(PLACE - DVec3::Y * 7.0);
     floor
-        .place(&Palette::from_matrices([Affine::IDENTITY]), under)
+        .teleport(&Palette::from_matrices([Affine::IDENTITY]), under)
         .unwrap();
     let mut climbers: Vec<Climber> = (0..CLIMBERS).map(climber).collect();
     let mut positions = Vec::new();
@@ -61,7 +61,7 @@ fn play_on_these_threads(run: &mut GoldenRun, level: SimdLevel) {
             .unwrap();
         let palette = skeleton.palette(&pose).unwrap();
         if tick == 0 {
-            surface.place(&palette, place(time)).unwrap();
+            surface.teleport(&palette, place(time)).unwrap();
         } else {
             surface.advance(&palette, place(time)).unwrap();
         }

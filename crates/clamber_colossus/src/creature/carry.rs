@@ -194,7 +194,7 @@ impl Creature {
         let at = motion.position;
         self.state.moving_ground.point = Some(GroundPoint { at, ..point });
         let moves = at != motion.previous_position || motion.turn != DQuat::IDENTITY;
-        (moves && !motion.placed).then_some(motion)
+        (moves && !motion.was_teleported).then_some(motion)
     }
 
     /// The point of the ground below the creature.

@@ -4,8 +4,8 @@ use clamber_world::MaterialPoint;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::Creature;
 use super::report::CreatureEvent;
-use super::{Creature, Wound};
 use crate::kind::{CreatureKind, Plate};
 
 /// The damage to a creature, and the wounds and events that the next step senses and reports.
@@ -140,21 +140,27 @@ impl Damage {
 }
 
 impl Creature {
-    /// Applies a wound. Returns the damage done to a weak point: 0 if there is no open weak point at that place, or if
-    /// a plate took the blow. The brain senses the wound in the next step, and the report of that step has its events.
-    pub fn hurt(&mut self, wound: &Wound) -> f64 {
-        if !wound.place.is_finite() || !(0.0..=f64::MAX).contains(&wound.damage) {
+    /// Strikes the creature with a blade, an arrow or the like. Returns the damage done to a weak point: 0 if there is
+    /// no open weak point at that place, or if a plate took the blow. The brain senses the wound in the next step, and
+    /// the report of that step has its events.
+    ///
+    /// `at` is the point of the skin: it gives the region, and the plate that takes the blow if there is one. For a hit
+    /// on the creature's surface, this is `MaterialPoint::on_triangle(hit.triangle, hit.barycentric)`; for a contact
+    /// with an [`Obstacle`](clamber_world::Obstacle), the contact's `material`. `place` is the point of impact, in
+    /// world space: the first open weak point whose ball contains it takes the `damage`.
+    pub fn hurt(&mut self, at: &MaterialPoint, place: DVec3, damage: f64) -> f64 {
+        if !place.is_finite() || !(0.0..=f64::MAX).contains(&damage) {
             return 0.0;
         }
-        let Some(joint) = self.joint_at(&wound.at) else {
+        let Some(joint) = self.joint_at(at) else {
             return 0.0;
         };
-        let done = match self.struck_at(&wound.at, wound.place) {
+        let done = match self.struck_at(at, place) {
             (_, Some(plate)) => {
-                self.strain(plate, wound.damage);
+                self.strain(plate, damage);
                 0.0
             }
-            (Some(weak_point), None) => self.wound(weak_point, wound.damage),
+            (Some(weak_point), None) => self.wound(weak_point, damage),
             (None, None) => 0.0,
         };
         self.state.damage.wounds.push(Felt {

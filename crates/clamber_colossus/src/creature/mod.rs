@@ -40,10 +40,10 @@ use glam::DVec3;
 pub use config::CreatureConfig;
 pub use foresee::Foresight;
 pub use ranged::{ActiveShot, ActiveWave};
-pub use report::{ActiveBeam, AttackPhase, Blow, CreatureEvent, CreatureReport};
+pub use report::{ActiveBeam, AttackPhase, CreatureEvent, CreatureReport, StrikeHit};
 pub use state::CreatureState;
 use state::Sound;
-pub use world::{Noise, Person, Riding, Surroundings, Wound};
+pub use world::{Noise, Person, Riding, Surroundings};
 
 use self::legs::PutLeg;
 use self::size::Size;

@@ -9,7 +9,7 @@ pub struct CreatureReport {
     /// Events of the step, in order.
     pub events: Vec<CreatureEvent>,
     /// Blows that the creature dealt to people. Give each one to its climber with the next tick's input.
-    pub blows: Vec<Blow>,
+    pub blows: Vec<StrikeHit>,
     /// Beam of the creature's attack, if there is one in this tick.
     pub beam: Option<ActiveBeam>,
 }
@@ -112,7 +112,7 @@ pub enum CreatureEvent {
 
 /// A blow that a limb, a wave, a shot or a beam dealt to a person.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Blow {
+pub struct StrikeHit {
     /// [`Person::id`](super::Person::id) of the person.
     pub person: u64,
     /// Change of the person's velocity, metres a second: along the motion of the limb or the shot, along the beam, or

@@ -159,7 +159,7 @@ impl Creature {
         let (skeleton, pose) = (self.kind.skeleton(), &self.state.pose);
         skeleton.palette_into(pose, &mut self.palette)?;
         let world_from_model = self.state.world_from_model(self.size.scale);
-        self.surface.place(&self.palette, world_from_model)?;
+        self.surface.teleport(&self.palette, world_from_model)?;
         Ok(())
     }
 

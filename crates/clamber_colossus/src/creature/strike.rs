@@ -9,7 +9,7 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::clips::Playing;
-use super::report::{AttackPhase, Blow};
+use super::report::{AttackPhase, StrikeHit};
 use super::room::LEAST_GROUND_NORMAL;
 use super::state::{is_far, is_large};
 use super::{Creature, Person, Surroundings};
@@ -175,7 +175,7 @@ impl Creature {
             let velocity = motion.map_or(DVec3::ZERO, |motion| motion.velocity);
             let direction = velocity.try_normalize().unwrap_or(hit.separation_normal);
             self.mark_struck(person.id);
-            self.report.blows.push(Blow {
+            self.report.blows.push(StrikeHit {
                 person: person.id,
                 velocity: direction * strike.attack.throw,
                 damage: strike.attack.damage,

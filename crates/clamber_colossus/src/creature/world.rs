@@ -47,19 +47,6 @@ pub struct Noise {
     pub loudness: f64,
 }
 
-/// A hit of a blow or an arrow on a creature.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wound {
-    /// Point of impact, in world space. The first open weak point whose ball contains it takes the damage.
-    pub place: DVec3,
-    /// Point of the skin. It gives the region, and the plate that takes the blow if there is one. For a hit on the
-    /// creature's surface, this is `MaterialPoint::on_triangle(hit.triangle, hit.barycentric)`; for a contact with an
-    /// [`Obstacle`], the contact's `material`.
-    pub at: MaterialPoint,
-    /// Damage to a weak point at that place.
-    pub damage: f64,
-}
-
 impl Surroundings<'_> {
     /// True if terrain is between a place and a person, towards the middle of the body.
     pub(super) fn hides(&self, place: DVec3, person: &Person) -> bool {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use clamber_colossus::{Creature, CreatureKind};
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::{SkinnedSurface, TargetMotion};
 use clamber_world::{
@@ -164,7 +164,7 @@ fn on_a_deck_that_moves_it_lives_as_on_one_that_does_not() {
 /// A plate of two triangles on one joint.
 pub(crate) fn plate(corners: [Vec3; 4]) -> SkinnedSurface {
     let source = MeshSource::rigid(&corners, &[[0, 1, 2], [0, 2, 3]]);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }
 

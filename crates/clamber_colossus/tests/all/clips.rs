@@ -42,7 +42,7 @@ fn play(kind: &CreatureKind, clip: &Clip, mut look: impl FnMut(&SkinnedSurface))
         let pose = clip.sample(&rest, time, Playback::Clamp).unwrap();
         let palette = kind.skeleton().palette(&pose).unwrap();
         if tick == 0 {
-            surface.place(&palette, Similarity::IDENTITY).unwrap();
+            surface.teleport(&palette, Similarity::IDENTITY).unwrap();
         } else {
             surface.advance(&palette, Similarity::IDENTITY).unwrap();
         }
@@ -164,7 +164,7 @@ fn a_fresh_climber_survives_two_shakes_and_not_six() {
     let is_fur = |point: &MaterialPoint| mesh.tags()[point.key as usize].kind == SurfaceKind::Fur;
     let mut survived = Vec::new();
     for (away, point) in near.iter().filter(|(_, point)| is_fur(point)) {
-        surface.place(&pose(0.0), Similarity::IDENTITY).unwrap();
+        surface.teleport(&pose(0.0), Similarity::IDENTITY).unwrap();
         let corners = mesh.triangles()[point.key as usize]
             .map(|vertex| surface.in_model().position(vertex).unwrap().as_dvec3());
         let normal = (corners[1] - corners[0])

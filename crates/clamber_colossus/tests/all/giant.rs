@@ -12,7 +12,7 @@ use crate::support::{
 use clamber_colossus::brain::MOST_TRANSITIONS;
 use clamber_colossus::{
     Brain, BrainState, CreatureConfig, CreatureKind, CreatureState, Noise, Person, RegionSense,
-    Sense, Surroundings, Wound,
+    Sense, Surroundings,
 };
 use clamber_surface::mesh::TriangleId;
 use clamber_world::rapier3d::prelude::PhysicsWorld;
@@ -220,11 +220,9 @@ impl Life {
                 &[]
             };
             if lots.u32(..1_500) == 0 {
-                giant.hurt(&Wound {
-                    place: DVec3::Y * 20.0,
-                    at: MaterialPoint::on_triangle(TriangleId(lots.u32(..1_000)), [1.0 / 3.0; 3]),
-                    damage: 0.0,
-                });
+                let triangle = TriangleId(lots.u32(..1_000));
+                let at = MaterialPoint::on_triangle(triangle, [1.0 / 3.0; 3]);
+                giant.hurt(&at, DVec3::Y * 20.0, 0.0);
             }
             giant
                 .step(&Surroundings {

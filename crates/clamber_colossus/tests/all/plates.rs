@@ -6,11 +6,11 @@ use clamber_animation::rig::{Joint, JointId, Skeleton, Transform, WeakPoint};
 use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode};
 use clamber_colossus::{
     Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, CreatureState, Sense,
-    Surroundings, Wound,
+    Surroundings,
 };
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, MeshSource, Rig, SurfaceKind, SurfaceTag, TriangleId,
+    ColliderBuildOptions, ColliderMesh, MeshSource, Rig, SurfaceKind, SurfaceTag, TriangleId,
 };
 use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
@@ -55,7 +55,7 @@ fn slab() -> Creature {
         tags: &tags,
         ..MeshSource::rigid(&positions, &triangles)
     };
-    let mesh = ColliderMesh::build(&source, &BuildOptions::default())
+    let mesh = ColliderMesh::build(&source, &ColliderBuildOptions::default())
         .unwrap()
         .0;
     let root = Joint {
@@ -75,12 +75,10 @@ fn slab() -> Creature {
     Creature::new(Arc::new(kind), CreatureConfig::default()).unwrap()
 }
 
-fn blow(triangle: u32, at: DVec3, damage: f64) -> Wound {
-    Wound {
-        place: at,
-        at: MaterialPoint::on_triangle(TriangleId(triangle), [1.0 / 3.0; 3]),
-        damage,
-    }
+/// Strikes the middle of a triangle.
+fn strike(slab: &mut Creature, triangle: u32, place: DVec3, damage: f64) -> f64 {
+    let at = MaterialPoint::on_triangle(TriangleId(triangle), [1.0 / 3.0; 3]);
+    slab.hurt(&at, place, damage)
 }
 
 /// Index of the plate's first triangle: the triangles of the slab come before it.
@@ -108,10 +106,10 @@ fn a_plate_breaks_after_three_staggers_and_drops_who_stands_on_it() {
     assert_eq!(step(&mut slab, false).1, ClimberMode::Standing);
     for stagger in 1..=3 {
         // A damage of 1.5 is too little for a stagger, and damage beyond a stagger is not kept for the next one.
-        assert_eq!(slab.hurt(&blow(PLATE, DVec3::Y * 0.5, 1.5)), 0.0);
+        assert_eq!(strike(&mut slab, PLATE, DVec3::Y * 0.5, 1.5), 0.0);
         let (events, ..) = step(&mut slab, false);
         assert!(events.is_empty(), "{events:?}");
-        slab.hurt(&blow(PLATE, DVec3::Y * 0.5, 9.0));
+        strike(&mut slab, PLATE, DVec3::Y * 0.5, 9.0);
         assert_eq!(slab.state().plate(0), 3 - stagger);
         let (events, mode, _) = step(&mut slab, false);
         let breaks = stagger == 3;
@@ -144,7 +142,7 @@ fn a_restored_plate_is_whole_again() {
     let mut slab = slab();
     let whole: CreatureState = slab.state().clone();
     for _ in 0..3 {
-        slab.hurt(&blow(PLATE, DVec3::Y * 0.5, 2.0));
+        strike(&mut slab, PLATE, DVec3::Y * 0.5, 2.0);
     }
     let is_there = |slab: &Creature| slab.surface().is_enabled(TriangleId(PLATE));
     assert!(!is_there(&slab));
@@ -158,18 +156,12 @@ fn a_restored_plate_is_whole_again() {
 #[test]
 fn weak_points_open_in_their_order() {
     let mut slab = slab();
-    // A wound at the point of the skin that is nearest to a place.
-    let at = |slab: &Creature, place: DVec3, damage: f64| {
-        let hit = slab.surface().in_world().closest_point(place, 1.0).unwrap();
-        Wound {
-            at: MaterialPoint::on_triangle(hit.triangle, hit.barycentric),
-            ..blow(0, place, damage)
-        }
-    };
     let [first, second] = [-3.0, 3.0].map(|x| DVec3::new(x, 0.0, 0.0));
+    // Strikes the point of the skin that is nearest to a place.
     let hurt = |slab: &mut Creature, place: DVec3, damage: f64| {
-        let wound = at(slab, place, damage);
-        slab.hurt(&wound)
+        let hit = slab.surface().in_world().closest_point(place, 1.0).unwrap();
+        let at = MaterialPoint::on_triangle(hit.triangle, hit.barycentric);
+        slab.hurt(&at, place, damage)
     };
     assert!(slab.is_open(0) && !slab.is_open(1));
     assert_eq!(hurt(&mut slab, second, 1.0), 0.0);
@@ -182,6 +174,6 @@ fn weak_points_open_in_their_order() {
     for damage in [f64::NAN, f64::INFINITY, -1.0] {
         assert_eq!(hurt(&mut slab, second, damage), 0.0);
     }
-    assert_eq!(slab.hurt(&blow(u32::MAX, second, 1.0)), 0.0);
+    assert_eq!(strike(&mut slab, u32::MAX, second, 1.0), 0.0);
     assert_eq!(slab.state().hit_points(), [0.0, 1.0]);
 }

@@ -10,7 +10,7 @@ use crate::support::{TICK, level_ground, on_terrain, person, rider, test_rig, wi
 use clamber_animation::rig::{Channel, Clip, Interpolation, JointId, Keyframes, Marker, Skeleton};
 use clamber_animation::{SeamProbe, joint_in_model};
 use clamber_colossus::{
-    Brain, BrainFile, Creature, CreatureConfig, CreatureKind, Noise, Person, Surroundings, Wound,
+    Brain, BrainFile, Creature, CreatureConfig, CreatureKind, Noise, Person, Surroundings,
 };
 use clamber_gltf::load;
 use clamber_surface::mesh::{Rig, SurfaceKind, TriangleId};
@@ -163,7 +163,7 @@ fn lives(height: f64, share: f64) {
         let hit = skin.closest_point(place, height).unwrap();
         let at = MaterialPoint::on_triangle(hit.triangle, hit.barycentric);
         let (place, damage) = (hit.point, 3.0);
-        let done = creature.hurt(&Wound { place, at, damage });
+        let done = creature.hurt(&at, place, damage);
         assert_eq!(
             done,
             3.0,

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use crate::attacks::{attacks, before, spot};
 use crate::support::{TICK, brain_with, creature, kind, person, with_people};
 use clamber_colossus::{
-    Blow, Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, CreatureReport, Person,
-    Surroundings,
+    Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, CreatureReport, Person,
+    StrikeHit, Surroundings,
 };
 use clamber_world::{HalfSpace, Obstacle, TriangleTerrain};
 use glam::DVec3;
@@ -40,7 +40,7 @@ pub(crate) fn wall(corner: DVec3, along: DVec3, height: f64) -> TriangleTerrain 
 #[derive(Debug, Default)]
 pub(crate) struct Seen {
     /// Blows, with the number of ticks since the attack began.
-    pub(crate) blows: Vec<(usize, Blow)>,
+    pub(crate) blows: Vec<(usize, StrikeHit)>,
     /// Events, with the number of ticks since the attack began.
     pub(crate) events: Vec<(usize, CreatureEvent)>,
 }

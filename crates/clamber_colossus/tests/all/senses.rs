@@ -10,7 +10,7 @@ use crate::support::{
 };
 use clamber_colossus::{
     Creature, CreatureConfig, CreatureEvent, CreatureKind, Noise, Person, Riding, Sense,
-    Surroundings, Wound,
+    Surroundings,
 };
 use clamber_surface::mesh::TriangleId;
 use clamber_world::{MaterialPoint, Obstacle};
@@ -71,12 +71,8 @@ fn an_arrow_alarms_it_within_half_a_second() {
     let around = on_terrain(&terrain);
     let mut giant = alone(&kind, 1);
     entered(&mut giant, &around, 2.0);
-    let wound = Wound {
-        place: DVec3::Y * 20.0,
-        at: skin_of(&kind, "chest"),
-        damage: 0.0,
-    };
-    assert_eq!(giant.hurt(&wound), 0.0);
+    let chest = skin_of(&kind, "chest");
+    assert_eq!(giant.hurt(&chest, DVec3::Y * 20.0, 0.0), 0.0);
     let states = entered(&mut giant, &around, 0.5);
     assert!(
         states.iter().any(|(_, name)| name == "alive/alert/notice"),

@@ -102,7 +102,7 @@ fn add_fighter(hash: &mut Fingerprint, state: &FighterState) {
         climber: _,
         act,
         actions,
-        blow,
+        knockback,
         harm,
         hit_stop,
         dead,
@@ -113,7 +113,9 @@ fn add_fighter(hash: &mut Fingerprint, state: &FighterState) {
     } = state;
     take(
         hash,
-        &(act, actions, blow, harm, hit_stop, dead, arrows, random),
+        &(
+            act, actions, knockback, harm, hit_stop, dead, arrows, random,
+        ),
     );
     take(hash, &(has_begun, spawn));
 }

@@ -1,6 +1,6 @@
 //! Orders: changes that a game makes to an arena between two of its ticks.
 
-use clamber_climber::{Blow, Climber};
+use clamber_climber::{Climber, Knockback};
 use clamber_colossus::{Creature, CreatureConfig, Noise};
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
@@ -76,8 +76,8 @@ pub enum Order {
     Strike {
         /// The fighter.
         fighter: FighterId,
-        /// The blow.
-        blow: Blow,
+        /// What the blow does to it.
+        knockback: Knockback,
     },
     /// Moves a fighter to a place, at rest in the air. It keeps its hit points, and its act ends. If the place is
     /// occupied, it is moved aside.
@@ -251,9 +251,9 @@ impl Arena {
                 share("hit points", *hit_points)?;
                 share("stamina", *stamina)
             }
-            Order::Strike { blow, .. } => {
-                share("damage", blow.damage)?;
-                check(blow.velocity.is_finite(), || {
+            Order::Strike { knockback, .. } => {
+                share("damage", knockback.damage)?;
+                check(knockback.velocity.is_finite(), || {
                     "its velocity is not finite".to_owned()
                 })
             }
@@ -427,7 +427,7 @@ impl Arena {
                 stamina,
                 ..
             } => one.heal(*hit_points, *stamina)?,
-            Order::Strike { blow, .. } => one.take_blow(*blow),
+            Order::Strike { knockback, .. } => one.be_struck(*knockback),
             Order::PlaceFighter { position, .. } => one.place(*position)?,
             Order::Checkpoint { position, .. } => one.rest_mut().spawn = *position,
             Order::Rise { .. } => {

@@ -1,7 +1,7 @@
 //! One step of an arena, in its fixed order.
 
-use clamber_climber::{Blow, ClimberGroup, ClimberInput, ClimberMode, StepRules};
-use clamber_colossus::{Person, Riding, Surroundings, Wound};
+use clamber_climber::{ClimberGroup, ClimberInput, ClimberMode, Knockback, StepRules};
+use clamber_colossus::{Person, Riding, Surroundings};
 use clamber_world::{Obstacle, ObstacleId};
 
 use super::member::skins_of;
@@ -47,7 +47,7 @@ impl Arena {
     /// A creature's blow reaches its fighter in the next step.
     ///
     /// # Errors
-    /// [`ArenaError::Inputs`], [`ArenaError::Blow`], [`ArenaError::InputNotFinite`], [`ArenaError::TerrainId`] and
+    /// [`ArenaError::Inputs`], [`ArenaError::InputNotFinite`], [`ArenaError::TerrainId`] and
     /// [`ArenaError::TerrainTwice`]: nothing is changed then. [`ArenaError::Creature`] if a creature cannot be posed:
     /// the arena has to be restored then.
     pub fn step(
@@ -118,9 +118,6 @@ impl Arena {
         }
         for (fighter, input) in self.fighters.iter().zip(inputs) {
             let fighter = fighter.id().0 as usize;
-            if input.blow.is_some() {
-                return Err(ArenaError::Blow { fighter });
-            }
             let vectors = [input.walk, input.climb, input.aim];
             if !vectors.iter().all(|v| v.is_finite()) {
                 return Err(ArenaError::InputNotFinite { fighter });
@@ -289,11 +286,12 @@ impl Arena {
                 let body = bodies.next_if(|(body, _)| *body == fighter_obstacle(other.id()));
                 obstacles.extend(body.filter(|_| are_near(ours, other, dt)));
             }
+            let fighter = &mut self.fighters[index];
             let rules = StepRules {
                 id: Some(id),
+                knockback: fighter.take_knockback(),
                 ..*rules
             };
-            let fighter = &mut self.fighters[index];
             let is_held = fighter.be_held(dt);
             let (input, throws) = fighter.begin(&player, is_held);
             let before = FighterFrame::of(fighter.climber());
@@ -327,7 +325,7 @@ impl Arena {
                     },
                     dt,
                     is_held,
-                    is_struck: input.blow.is_some(),
+                    is_struck: rules.knockback.is_some(),
                     throws,
                 };
                 fighter.wield(&wielding, &mut scratch.outcome);
@@ -375,11 +373,8 @@ impl Arena {
             });
             let struck = [weak_point, plate];
             let is_new = by.is_none_or(|by| by.hurts_anew(hit.weapon, id, struck, below));
-            let damage = creature.hurt(&Wound {
-                place: hit.place,
-                at: hit.at,
-                damage: if is_new { hit.damage } else { 0.0 },
-            });
+            let damage = if is_new { hit.damage } else { 0.0 };
+            let damage = creature.hurt(&hit.at, hit.place, damage);
             self.events.push(ArenaEvent::Hit {
                 by: hit.by,
                 weapon: hit.weapon,
@@ -419,7 +414,7 @@ impl Arena {
                     damage,
                     place: blow.place,
                 });
-                fighter.take_blow(Blow {
+                fighter.be_struck(Knockback {
                     velocity,
                     damage,
                     by: Some(creature_obstacle(*id)),

@@ -49,16 +49,11 @@ impl Fighter {
     pub(crate) fn begin(&mut self, input: &ClimberInput, is_held: bool) -> (ClimberInput, bool) {
         let pressed = input.actions & !self.state.actions;
         self.state.actions = input.actions;
-        let blow = self.state.blow.take();
         if self.is_dead() {
-            let lies = ClimberInput {
-                blow,
-                ..ClimberInput::IDLE
-            };
-            return (lies, false);
+            return (ClimberInput::IDLE, false);
         }
         let throws = !is_held && self.press(input.actions, pressed);
-        let mut input = ClimberInput { blow, ..*input };
+        let mut input = *input;
         let mode = self.climber.state().mode;
         let stands_still = match self.state.act {
             WeaponAction::Raise { .. }
@@ -225,7 +220,7 @@ impl Fighter {
         let fresh = Climber::new(self.config.climber, place)?;
         self.climber.restore(*fresh.state())?;
         self.state.dead = None;
-        self.state.blow = None;
+        self.state.knockback = None;
         self.state.harm = 0.0;
         self.state.arrows = arrows(&self.config);
         Ok(())

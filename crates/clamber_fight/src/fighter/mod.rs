@@ -58,7 +58,7 @@ impl Fighter {
             climber: *climber.state(),
             act: WeaponAction::Ready,
             actions: 0,
-            blow: None,
+            knockback: None,
             harm: 0.0,
             hit_stop: 0.0,
             dead: None,

@@ -1,6 +1,6 @@
 //! Effects of orders on a fighter.
 
-use clamber_climber::{Blow, Climber, ClimberError, ClimberState};
+use clamber_climber::{Climber, ClimberError, ClimberState, Knockback};
 use glam::DVec3;
 
 use super::{Fighter, WeaponAction};
@@ -25,7 +25,7 @@ impl Fighter {
         self.state.act = WeaponAction::Ready;
         self.state.hit_stop = 0.0;
         self.state.has_begun = false;
-        (self.state.blow, self.state.harm) = (None, 0.0);
+        (self.state.knockback, self.state.harm) = (None, 0.0);
         Ok(())
     }
 
@@ -52,14 +52,19 @@ impl Fighter {
 
     /// Stores a blow for the climber's next step. Among several blows, the hardest one's velocity counts, and the
     /// damages add up.
-    pub(crate) fn take_blow(&mut self, mut dealt: Blow) {
-        if let Some(other) = self.state.blow {
+    pub(crate) fn be_struck(&mut self, mut dealt: Knockback) {
+        if let Some(other) = self.state.knockback {
             if other.velocity.length_squared() >= dealt.velocity.length_squared() {
                 (dealt.velocity, dealt.by) = (other.velocity, other.by);
             }
             dealt.damage = (dealt.damage + other.damage).min(1.0);
         }
-        self.state.blow = Some(dealt);
+        self.state.knockback = Some(dealt);
+    }
+
+    /// The knockback for the climber's next step.
+    pub(crate) fn take_knockback(&mut self) -> Option<Knockback> {
+        self.state.knockback.take()
     }
 
     /// Revives a dead fighter at its spawn point. Returns true if it was dead.

@@ -1,4 +1,4 @@
-use clamber_climber::{Blow, ClimberState};
+use clamber_climber::{ClimberState, Knockback};
 use clamber_world::{Attachment, ObstacleId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -12,8 +12,8 @@ pub struct FighterState {
     pub act: WeaponAction,
     /// Buttons of the last tick.
     pub actions: u32,
-    /// Blow that strikes it in the next tick.
-    pub blow: Option<Blow>,
+    /// Knockback of its next step.
+    pub knockback: Option<Knockback>,
     /// Hit points that it loses in the next tick without a blow.
     pub harm: f64,
     /// Seconds for which the impact of its own blade still holds it.
@@ -134,7 +134,7 @@ impl FighterState {
             } => is_time(*seconds) && target(at),
         };
         let blow = self
-            .blow
+            .knockback
             .is_none_or(|blow| blow.velocity.is_finite() && is_share(blow.damage));
         act && blow
             && self.spawn.is_finite()

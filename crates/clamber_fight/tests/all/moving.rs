@@ -7,7 +7,7 @@ use clamber_colossus::CreatureConfig;
 use clamber_fight::actions::{CUT, STAB};
 use clamber_fight::{Arena, ArenaConfig, FighterConfig};
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId, TriangleTerrain};
@@ -31,9 +31,9 @@ impl Car {
             }
         }
         let source = MeshSource::rigid(&positions, &triangles);
-        let mesh = ColliderMesh::build(&source, &BuildOptions::default());
+        let mesh = ColliderMesh::build(&source, &ColliderBuildOptions::default());
         let mut surface = SkinnedSurface::new(Arc::new(mesh.unwrap().0));
-        surface.place(&palette(), Similarity::IDENTITY).unwrap();
+        surface.teleport(&palette(), Similarity::IDENTITY).unwrap();
         Self(surface)
     }
 

@@ -3,7 +3,7 @@
 use crate::support;
 
 use crate::support::{GIANT, HERO, Slab, giant, land, level_ground, mode, step, step_with};
-use clamber_climber::{Blow, ClimberInput, ClimberMode, StepRules};
+use clamber_climber::{ClimberInput, ClimberMode, Knockback, StepRules};
 use clamber_colossus::{CreatureConfig, CreatureEvent, Noise};
 use clamber_fight::actions::STAB;
 use clamber_fight::{
@@ -60,7 +60,7 @@ fn heal(hit_points: f64, stamina: f64) -> Order {
 fn strike(velocity: DVec3, damage: f64) -> Order {
     Order::Strike {
         fighter: HERO,
-        blow: Blow {
+        knockback: Knockback {
             velocity,
             damage,
             by: None,

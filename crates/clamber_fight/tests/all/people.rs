@@ -242,12 +242,6 @@ fn bad_inputs_change_nothing() {
         matches!(wild, ArenaError::InputNotFinite { fighter: 1 }),
         "{wild}"
     );
-    let blow = ClimberInput {
-        blow: Some(Default::default()),
-        ..ClimberInput::IDLE
-    };
-    let blow = refused(&mut arena, &[blow, ClimberInput::IDLE]);
-    assert!(matches!(blow, ArenaError::Blow { fighter: 0 }), "{blow}");
     let rules = StepRules {
         air_velocity: DVec3::X * f64::INFINITY,
         ..StepRules::default()

@@ -151,7 +151,7 @@ fn each_field_that_is_left_out_is_noticed_within_a_second() {
         ("hit-stop", "/fighters/2/state/hit_stop"),
         ("charge and other acts", "/fighters/0/state/act"),
         ("buttons", "/fighters/0/state/actions"),
-        ("blow", "/fighters/1/state/blow"),
+        ("knockback", "/fighters/1/state/knockback"),
         ("random stream", "/fighters/1/state/random"),
         ("arrows", "/projectiles"),
         ("number of the next arrow", "/next_projectile"),

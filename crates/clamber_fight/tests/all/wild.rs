@@ -2,7 +2,7 @@
 //! and repeat with the same bits. Also the same fight with creatures of other sizes, and far from the origin.
 
 use crate::support::{GROUND, Slab, weak_point};
-use clamber_climber::{Blow, ClimberInput};
+use clamber_climber::ClimberInput;
 use clamber_colossus::CreatureConfig;
 use clamber_fight::{
     Arena, ArenaConfig, ArenaError, FighterConfig, ProjectileMotion, WeaponAction,
@@ -45,13 +45,12 @@ fn input(rng: &mut Rng) -> ClimberInput {
         } else {
             rng.u32(..)
         },
-        blow: (rng.u8(0..200) == 0).then(Blow::default),
     }
 }
 
 fn is_sound(input: &ClimberInput) -> bool {
     let vectors = [input.walk, input.climb, input.aim];
-    vectors.iter().all(|v| v.is_finite()) && input.blow.is_none()
+    vectors.iter().all(|v| v.is_finite())
 }
 
 fn melee(rng: &mut Rng) -> Arena {
@@ -102,10 +101,7 @@ fn a_thousand_runs_of_wild_inputs_neither_panic_nor_lose_a_bit() {
                     played.push(held);
                 }
                 Err(error) => {
-                    let known = matches!(
-                        error,
-                        ArenaError::InputNotFinite { .. } | ArenaError::Blow { .. }
-                    );
+                    let known = matches!(error, ArenaError::InputNotFinite { .. });
                     assert!(known && !held.iter().all(is_sound), "{error}: {held:?}");
                     assert_eq!(arena.fingerprint(), before, "changed by what was refused");
                     refused += 1;

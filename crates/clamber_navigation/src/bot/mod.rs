@@ -113,7 +113,7 @@ impl Bot {
     }
 
     /// Number of times that the bot has planned.
-    pub fn plans(&self) -> u64 {
+    pub fn plan_count(&self) -> u64 {
         self.plans
     }
 

@@ -507,5 +507,5 @@ pub(crate) fn throws(climber: &ClimberConfig, moment: &Moment) -> bool {
 
 /// True if the patch is too steep to stand on, beyond the step size in which slopes are stored.
 pub(crate) fn slips(climber: &ClimberConfig, moment: &Moment) -> bool {
-    moment.upright + COSINE_STEP < libm::cos(climber.ground.stays_on_slope())
+    moment.upright + COSINE_STEP < libm::cos(climber.ground.release_slope())
 }

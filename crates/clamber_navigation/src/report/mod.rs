@@ -33,7 +33,7 @@ pub struct ClimbReport {
     /// at most six tenths of the steepest one that it can stand on.
     pub rest_area: f64,
     /// Groups of entries, sorted by the area that is reached from them, largest first.
-    pub ways_on: Vec<WayOn>,
+    pub ways_on: Vec<EntryRoute>,
     /// The weak points, in their order in the file.
     pub weak_points: Vec<PointReport>,
     /// The clips, in their order in the file.
@@ -44,7 +44,7 @@ pub struct ClimbReport {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
-pub struct WayOn {
+pub struct EntryRoute {
     /// Number of entries in this group: patches onto which a climber gets from the ground ([`Entry`](crate::Entry)).
     pub entries: usize,
     /// The seat of the lowest of these entries at rest, in the world.
@@ -270,7 +270,7 @@ impl View<'_> {
             && cosine >= libm::cos(REST_SLOPE_SHARE * climber.ground.max_slope)
     }
 
-    fn ways_on(&self) -> Vec<WayOn> {
+    fn ways_on(&self) -> Vec<EntryRoute> {
         let mut left: Vec<usize> = self
             .graph
             .entries()
@@ -295,7 +295,7 @@ impl View<'_> {
                 .iter()
                 .enumerate()
                 .filter(|(patch, _)| reached.has(*patch));
-            ways.push(WayOn {
+            ways.push(EntryRoute {
                 entries: same.len(),
                 place: lowest.unwrap_or_default(),
                 area: counted.map(|(_, area)| area).sum(),

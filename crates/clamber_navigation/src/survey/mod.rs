@@ -61,7 +61,7 @@ impl Survey {
         config.check()?;
         let palette = rig.skeleton.palette(&rig.skeleton.rest_pose())?;
         let mut surface = SkinnedSurface::new(rig.collider.clone());
-        surface.place(&palette, config.world_from_model)?;
+        surface.teleport(&palette, config.world_from_model)?;
         let mut holds = surface.clone();
         for (index, tag) in rig.collider.tags().iter().enumerate() {
             if !config.can_grip(tag) {

@@ -147,7 +147,7 @@ fn crosses(
         }
         skeleton.palette(&pose).unwrap()
     };
-    surface.place(&pose(0.0), place(size)).unwrap();
+    surface.teleport(&pose(0.0), place(size)).unwrap();
     let config = graph.config().climber;
     let feet = DVec3::Y * 1.02 * config.body.radius;
     let mut who = Climber::new(config, from * size + feet).unwrap();

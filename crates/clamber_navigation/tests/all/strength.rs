@@ -103,7 +103,9 @@ fn climb(
         }
         skeleton.palette(&pose).unwrap()
     };
-    surface.place(&pose(begins), Similarity::IDENTITY).unwrap();
+    surface
+        .teleport(&pose(begins), Similarity::IDENTITY)
+        .unwrap();
     let config = graph.config().climber;
     let radius = config.body.radius;
     let mut who = Climber::new(config, from + DVec3::Y * 1.02 * radius).unwrap();

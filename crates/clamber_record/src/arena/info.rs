@@ -3,6 +3,7 @@ use std::collections::BTreeMap;
 use clamber_fight::Arena;
 
 use crate::climber::{VERSION, common, hash, text, tick_seconds};
+use crate::kind::Entries;
 use crate::views::RESERVED;
 use crate::{RecordError, RecordingInfo};
 
@@ -31,11 +32,12 @@ impl ArenaInfo {
     /// The metadata of an arena, with the names `creature 0`, `fighter 0` and so on, and without settings.
     pub fn of(arena: &Arena) -> Self {
         let named = |what: &str, count| (0..count).map(|n| format!("{what} {n}")).collect();
+        let [creatures, fighters] = counts(arena);
         Self {
             config: arena.config_hash(),
             tick_seconds: arena.config().tick,
-            creatures: named("creature", named_of(arena.next_creature().0)),
-            fighters: named("fighter", named_of(arena.next_fighter().0)),
+            creatures: named("creature", creatures),
+            fighters: named("fighter", fighters),
             settings: BTreeMap::new(),
             version: RecordingInfo::VERSION.to_owned(),
         }
@@ -65,57 +67,42 @@ impl ArenaInfo {
     /// Refuses names if their number does not fit the arena's creatures or fighters, or if a name is used twice or
     /// reserved: frames and entities of the recording are told apart by these names.
     pub(crate) fn check_names(&self, arena: &Arena) -> Result<(), RecordError> {
-        let counts = [
-            (
-                "creatures",
-                self.creatures.len(),
-                named_of(arena.next_creature().0),
-            ),
-            (
-                "fighters",
-                self.fighters.len(),
-                named_of(arena.next_fighter().0),
-            ),
-        ];
-        for (what, names, found) in counts {
+        let names = [("creatures", &self.creatures), ("fighters", &self.fighters)];
+        for ((what, names), found) in names.into_iter().zip(counts(arena)) {
+            let names = names.len();
             if names != found as usize {
                 let problem = format!("there are {names} names for {found} {what}");
                 return Err(RecordError::Names(problem));
             }
         }
-        let mut all: Vec<&str> = self.creatures.iter().map(String::as_str).collect();
-        all.extend(self.fighters.iter().map(String::as_str));
+        let all = self.creatures.iter().chain(&self.fighters);
+        let mut all: Vec<&str> = all.map(String::as_str).collect();
         all.sort_unstable();
         if let Some(pair) = all.windows(2).find(|pair| pair[0] == pair[1]) {
             return Err(RecordError::Names(format!("two are called `{}`", pair[0])));
         }
-        match all.iter().find(|name| RESERVED.contains(name)) {
-            Some(name) => {
-                let problem = format!("`{name}` is the name of something else in the recording");
-                Err(RecordError::Names(problem))
-            }
-            None => Ok(()),
+        if let Some(name) = all.iter().find(|name| RESERVED.contains(name)) {
+            let problem = format!("`{name}` is the name of something else in the recording");
+            return Err(RecordError::Names(problem));
         }
+        Ok(())
     }
 
-    pub(crate) fn to_metadata(&self) -> BTreeMap<String, String> {
-        let own = ("config".to_owned(), format!("{:016x}", self.config));
-        let names = |what: &'static str, names: &[String]| {
+    pub(crate) fn to_metadata(&self) -> Entries {
+        let mut metadata = common(self.tick_seconds);
+        metadata.insert("config".to_owned(), format!("{:016x}", self.config));
+        for (what, names) in [("creature", &self.creatures), ("fighter", &self.fighters)] {
             let names = names.iter().enumerate();
-            names
-                .map(|(number, name)| (format!("{what}.{number}"), name.clone()))
-                .collect::<Vec<_>>()
-        };
-        let common = common(self.tick_seconds).into_iter().chain([own]);
-        common
-            .chain(names("creature", &self.creatures))
-            .chain(names("fighter", &self.fighters))
-            .collect()
+            let entry =
+                |(number, name): (usize, &String)| (format!("{what}.{number}"), name.clone());
+            metadata.extend(names.map(entry));
+        }
+        metadata
     }
 
     pub(crate) fn from_metadata(
-        metadata: &BTreeMap<String, String>,
-        settings: BTreeMap<String, String>,
+        metadata: &Entries,
+        settings: Entries,
     ) -> Result<Self, RecordError> {
         let names = |what: &str| {
             let name = |number| metadata.get(&format!("{what}.{number}")).cloned();
@@ -132,8 +119,13 @@ impl ArenaInfo {
     }
 }
 
-/// How many of the first `next` numbers have names of their own: the names of a state with very high numbers would take
-/// too much memory.
-fn named_of(next: u32) -> u32 {
-    next.min(1000)
+/// How many creatures and fighters have names of their own, of those that the arena has had: the names of a state with
+/// very high numbers would take too much memory.
+fn counts(arena: &Arena) -> [u32; 2] {
+    next(arena).map(|next| next.min(1000))
+}
+
+/// The numbers of the next creature and the next fighter.
+pub(super) fn next(arena: &Arena) -> [u32; 2] {
+    [arena.next_creature().0, arena.next_fighter().0]
 }

@@ -4,13 +4,10 @@ mod info;
 mod lines;
 mod recorder;
 mod recording;
-mod replay;
-mod taken;
-mod writing;
+mod tick;
 
 pub use info::ArenaInfo;
 pub(crate) use recorder::ArenaMemory;
 pub use recorder::ArenaRecorder;
-pub use recording::{ArenaRecording, RecordedArenaTick};
-pub use replay::{ArenaDifference, ArenaReplay};
-pub(crate) use taken::TakenArena;
+pub use recording::{ArenaDifference, ArenaRecording, ArenaReplay, RecordedArenaTick};
+pub(crate) use tick::TakenArena;

@@ -9,11 +9,11 @@ use clamber_fight::{Arena, CreatureId, Order, creature_obstacle, fighter_obstacl
 use clamber_world::{Obstacle, ObstacleId};
 
 use super::ArenaInfo;
+use super::info::next;
 use super::lines::Words;
-use super::taken::{ArenaView, TakenArena};
-use super::writing::ArenaEncoder;
+use super::tick::{ArenaEncoder, ArenaView, TakenArena};
+use crate::chunks::Taken;
 use crate::recorder::create;
-use crate::taken::{Taken, TakenState};
 use crate::views::FigureJoints;
 use crate::{OfArena, RecordError, RecordOptions, RecorderOf};
 
@@ -68,14 +68,17 @@ impl<W: Write + Send + 'static> ArenaRecorder<W> {
         options: RecordOptions,
     ) -> Result<Self, RecordError> {
         info.check_names(arena)?;
-        let writing = ArenaEncoder::begin(out, info, options.skin_points)?;
+        let (mut encoder, output) = ArenaEncoder::begin(out, info, options.skin_points)?;
         let memory = ArenaMemory {
             info: info.clone(),
             joints: BTreeMap::new(),
             fighters: 0,
             named: [0; 2],
         };
-        let mut recorder = Self::start(writing, memory, options)?;
+        let mut recorder = Self::start(output, memory, options, move |data, output| {
+            encoder.tick(data, output)
+        })?;
+        recorder.check(arena)?;
         recorder.take(arena, (&[], &[]), &[])?;
         Ok(recorder)
     }
@@ -106,10 +109,9 @@ impl<W: Write> ArenaRecorder<W> {
             joins(|order| matches!(order, Order::AddCreature { .. })),
             joins(|order| matches!(order, Order::AddFighter { .. })),
         ];
-        let next = [arena.next_creature().0, arena.next_fighter().0];
         let known = self.memory.named.iter().zip(joined);
         let known = known.map(|(known, joined)| u64::from(*known) + joined as u64);
-        if !known.eq(next.map(u64::from)) {
+        if !known.eq(next(arena).map(u64::from)) {
             return Err(RecordError::Joined);
         }
         let (fighters, found) = (self.memory.fighters, inputs.len());
@@ -130,30 +132,24 @@ impl<W: Write> ArenaRecorder<W> {
 
     /// Names the creatures and fighters that have joined.
     fn name_all(&mut self, arena: &Arena) {
-        let next = [arena.next_creature().0, arena.next_fighter().0];
+        let memory = &mut self.memory;
         // Only creatures and fighters that are present get names: the next number of a state may be so high that the
         // names of all lower numbers do not fit in memory.
-        let creatures = arena.creatures().map(|(id, _)| id);
-        let creatures = creatures.filter(|id| id.0 >= self.memory.named[0]);
-        let creatures = creatures.map(|id| {
-            let name = self.memory.info.creature(id.0 as usize);
-            (creature_obstacle(id), name)
-        });
-        let fighters = arena.fighters().iter().map(|fighter| fighter.id());
-        let fighters = fighters.filter(|id| id.0 >= self.memory.named[1]);
-        let fighters = fighters.map(|id| {
-            let name = self.memory.info.fighter(id.0 as usize);
-            (fighter_obstacle(id), name)
-        });
-        self.names.extend(creatures.chain(fighters));
-        self.memory.named = next;
         for (id, creature) in arena.creatures() {
-            let joints = || {
-                let name = self.memory.info.creature(id.0 as usize);
-                Arc::new(FigureJoints::new(&name, creature.kind().skeleton()))
-            };
-            self.memory.joints.entry(id).or_insert_with(joints);
+            let name = || memory.info.creature(id.0 as usize);
+            if id.0 >= memory.named[0] {
+                self.names.entry(creature_obstacle(id)).or_insert_with(name);
+            }
+            let new = || Arc::new(FigureJoints::new(&name(), creature.kind().skeleton()));
+            memory.joints.entry(id).or_insert_with(new);
         }
+        for id in arena.fighters().iter().map(|fighter| fighter.id()) {
+            if id.0 >= memory.named[1] {
+                let name = || memory.info.fighter(id.0 as usize);
+                self.names.entry(fighter_obstacle(id)).or_insert_with(name);
+            }
+        }
+        memory.named = next(arena);
     }
 
     fn take(
@@ -162,7 +158,6 @@ impl<W: Write> ArenaRecorder<W> {
         inputs: (&[ClimberInput], &[Order]),
         terrain: &[(ObstacleId, &dyn Obstacle)],
     ) -> Result<(), RecordError> {
-        self.check(arena)?;
         let tick = arena.tick();
         self.name_all(arena);
         self.memory.fighters = arena.fighters().len();
@@ -181,7 +176,7 @@ impl<W: Write> ArenaRecorder<W> {
         taken.lines = words.lines();
         if self.chunks.begins() {
             let state = arena.to_bytes()?;
-            taken.saved.push(TakenState(Box::new(move || Ok(state))));
+            taken.saved.push(Box::new(move || Ok(state)));
         }
         self.chunks.push(taken)
     }

@@ -4,6 +4,7 @@ use clamber_climber::{Climber, ClimberConfig};
 use glam::DVec3;
 
 use crate::RecordError;
+use crate::kind::Entries;
 
 /// The metadata of a recording: everything that a replay needs to make the scene again, as it was before the first
 /// tick.
@@ -40,24 +41,22 @@ impl RecordingInfo {
     /// Key of the entry of the climber's configuration.
     const CLIMBER: &str = "climber";
 
-    pub(crate) fn to_metadata(&self) -> Result<BTreeMap<String, String>, RecordError> {
+    pub(crate) fn to_metadata(&self) -> Result<Entries, RecordError> {
         let config = ron::to_string(&self.climber);
         let config = config.map_err(|error| RecordError::encode("metadata", error))?;
         let mut metadata = common(self.tick_seconds);
+        let fingerprint = format!("{:016x}", self.creature_fingerprint);
         metadata.extend([
             ("creature".to_owned(), self.creature.clone()),
-            (
-                "creature_fingerprint".to_owned(),
-                format!("{:016x}", self.creature_fingerprint),
-            ),
+            ("creature_fingerprint".to_owned(), fingerprint),
             (Self::CLIMBER.to_owned(), config),
         ]);
         Ok(metadata)
     }
 
     pub(super) fn from_metadata(
-        metadata: &BTreeMap<String, String>,
-        settings: BTreeMap<String, String>,
+        metadata: &Entries,
+        settings: Entries,
     ) -> Result<Self, RecordError> {
         let config = text(metadata, Self::CLIMBER)?;
         let refused = |error: String| {
@@ -83,7 +82,7 @@ pub(crate) const VERSION: &str = "version";
 const TICK_SECONDS: &str = "tick_seconds";
 
 /// The metadata that both kinds of recordings have.
-pub(crate) fn common(tick_seconds: f64) -> BTreeMap<String, String> {
+pub(crate) fn common(tick_seconds: f64) -> Entries {
     [
         (VERSION.to_owned(), RecordingInfo::VERSION.to_owned()),
         (TICK_SECONDS.to_owned(), format!("{tick_seconds:?}")),
@@ -92,7 +91,7 @@ pub(crate) fn common(tick_seconds: f64) -> BTreeMap<String, String> {
 }
 
 /// The duration of a tick. Refuses one that is not positive or not finite.
-pub(crate) fn tick_seconds(metadata: &BTreeMap<String, String>) -> Result<f64, RecordError> {
+pub(crate) fn tick_seconds(metadata: &Entries) -> Result<f64, RecordError> {
     let value = text(metadata, TICK_SECONDS)?;
     let seconds = value.parse::<f64>();
     let seconds = seconds.map_err(|error| bad(TICK_SECONDS, value, &error.to_string()))?;
@@ -104,18 +103,14 @@ pub(crate) fn tick_seconds(metadata: &BTreeMap<String, String>) -> Result<f64, R
 }
 
 /// A hash, which is stored as hexadecimal digits.
-pub(crate) fn hash(metadata: &BTreeMap<String, String>, key: &str) -> Result<u64, RecordError> {
+pub(crate) fn hash(metadata: &Entries, key: &str) -> Result<u64, RecordError> {
     let value = text(metadata, key)?;
     u64::from_str_radix(value, 16).map_err(|error| bad(key, value, &error.to_string()))
 }
 
-pub(crate) fn text<'a>(
-    metadata: &'a BTreeMap<String, String>,
-    key: &str,
-) -> Result<&'a String, RecordError> {
-    metadata
-        .get(key)
-        .ok_or_else(|| RecordError::NotARecording(format!("its metadata has no entry {key}")))
+pub(crate) fn text<'a>(metadata: &'a Entries, key: &str) -> Result<&'a String, RecordError> {
+    let missing = || RecordError::NotARecording(format!("its metadata has no entry {key}"));
+    metadata.get(key).ok_or_else(missing)
 }
 
 fn bad(key: &str, value: &str, reason: &str) -> RecordError {
@@ -144,10 +139,8 @@ mod tests {
         let mut metadata = info.to_metadata()?;
         change(metadata.get_mut(RecordingInfo::CLIMBER).unwrap());
         let read = RecordingInfo::from_metadata(&metadata, BTreeMap::new())?;
-        assert_eq!(
-            (read.creature_fingerprint, read.tick_seconds),
-            (7, 1.0 / 60.0)
-        );
+        assert_eq!(read.creature_fingerprint, 7);
+        assert_eq!(read.tick_seconds, 1.0 / 60.0);
         Ok(read.climber)
     }
 
@@ -190,29 +183,30 @@ mod tests {
 
     #[test]
     fn what_is_no_configuration_is_refused_in_few_words() {
-        let replace = |from: &'static str, to: &'static str| {
-            move |text: &mut String| {
-                assert!(text.contains(from));
-                *text = text.replacen(from, to, 1);
-            }
+        let config = ClimberConfig::colossus_climber();
+        let text = ron::to_string(&config).unwrap();
+        let replaced = |from: &str, to: &str| {
+            assert!(text.contains(from));
+            text.replacen(from, to, 1)
         };
-        let put = |all: String| move |text: &mut String| all.clone_into(text);
-        let refused = |change: &dyn Fn(&mut String)| {
-            let error = read_back(ClimberConfig::colossus_climber(), change).unwrap_err();
+        let texts = [
+            // A group with another name would be an ability that is off.
+            replaced("grip:", "grips:"),
+            replaced("shake_time:0.1", "shake_time:NaN"),
+            replaced("shake_time:0.1", "shake_time:-1.0"),
+            String::new(),
+            "(".repeat(1 << 20),
+            "Some(".repeat(1 << 16),
+            format!("(gravity:\"{}\")", "x".repeat(1 << 20)),
+            "#![enable(implicit_some)](".to_owned(),
+        ];
+        for text in texts {
+            let error = read_back(config, |own| own.clone_from(&text)).unwrap_err();
             let error = error.to_string();
             assert!(
                 error.contains("configuration") && error.len() < 300,
                 "{error}"
             );
-        };
-        // A group with another name would be an ability that is off.
-        refused(&replace("grip:", "grips:"));
-        refused(&replace("shake_time:0.1", "shake_time:NaN"));
-        refused(&replace("shake_time:0.1", "shake_time:-1.0"));
-        refused(&put(String::new()));
-        refused(&put("(".repeat(1 << 20)));
-        refused(&put("Some(".repeat(1 << 16)));
-        refused(&put(format!("(gravity:\"{}\")", "x".repeat(1 << 20))));
-        refused(&put("#![enable(implicit_some)](".to_owned()));
+        }
     }
 }

@@ -3,15 +3,13 @@
 mod info;
 mod recorder;
 mod recording;
-mod replay;
-mod taken;
-mod writing;
+mod tick;
 
 pub use info::RecordingInfo;
 pub(crate) use info::{VERSION, common, hash, text, tick_seconds};
 pub(crate) use recorder::ClimberMemory;
 pub use recorder::{FigureView, Recorder, TickView};
-pub use recording::{RecordedSnapshot, RecordedTick, Recording};
-pub(crate) use replay::compare;
-pub use replay::{Difference, ReplayError, Replayed, replay};
-pub(crate) use taken::{ClimberTick, TakenSkin};
+pub use recording::{
+    Difference, RecordedSnapshot, RecordedTick, Recording, ReplayError, Replayed, replay,
+};
+pub(crate) use tick::{ClimberTick, TakenSkin};

@@ -6,18 +6,18 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 
-use clamber_climber::{ClimberInput, ClimberState, StepReport};
+use clamber_climber::{ClimberInput, ClimberState, Knockback, StepReport};
 use clamber_colossus::{Creature, CreatureEvent};
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::rig::{JointId, Palette, Skeleton};
+use clamber_surface::rig::{Palette, Skeleton};
 use clamber_surface::surface::SkinnedSurface;
 use foxglove::messages::Log;
 
-use super::writing::ClimberEncoder;
+use super::tick::ClimberEncoder;
 use super::{ClimberTick, RecordingInfo};
-use crate::names::{Part, name_of};
+use crate::chunks::Taken;
+use crate::names::{name_of, part_name};
 use crate::recorder::create;
-use crate::taken::{Taken, TakenState};
 use crate::views::{CREATURE, FigureJoints, TakenFigure, brain, brain_lines, line};
 use crate::{OfClimber, RecordError, RecordOptions, RecorderOf};
 
@@ -28,6 +28,9 @@ pub struct TickView<'a> {
     pub tick: u64,
     /// The climber's input in this tick.
     pub input: &'a ClimberInput,
+    /// The blow that struck the climber before this tick:
+    /// [`StepRules::knockback`](clamber_climber::StepRules::knockback) of its step.
+    pub knockback: Option<Knockback>,
     /// The climber's state after its step.
     pub state: &'a ClimberState,
     /// The report of the climber's step.
@@ -107,7 +110,7 @@ impl<W: Write + Send + 'static> Recorder<W> {
         // As many palettes as a chunk has, within reason: the game's thread needs no more at once.
         let (written, palettes) =
             sync_channel(options.chunk_ticks.clamp(1, MOST_PALETTES) as usize);
-        let writing = ClimberEncoder::begin(out, info, options.skin_points, written)?;
+        let (mut encoder, output) = ClimberEncoder::begin(out, info, options.skin_points, written)?;
         let joints = skeleton.joints().iter().map(|joint| joint.name.clone());
         let memory = ClimberMemory {
             creature: info.creature.clone(),
@@ -116,7 +119,9 @@ impl<W: Write + Send + 'static> Recorder<W> {
             figures: Vec::new(),
             palettes,
         };
-        Self::start(writing, memory, options)
+        Self::start(output, memory, options, move |data, output| {
+            encoder.tick(data, output)
+        })
     }
 }
 
@@ -135,10 +140,8 @@ impl<W: Write> Recorder<W> {
     /// If `out` panicked while an earlier chunk was written: that panic is resumed here.
     pub fn tick(&mut self, view: &TickView<'_>) -> Result<(), RecordError> {
         self.chunks.check(view.tick)?;
-        let (mesh, palette) = (
-            view.surface.mesh().joint_count(),
-            view.palette.matrices().len(),
-        );
+        let mesh = view.surface.mesh().joint_count();
+        let palette = view.palette.matrices().len();
         if mesh != palette {
             return Err(RecordError::JointCount { mesh, palette });
         }
@@ -152,19 +155,17 @@ impl<W: Write> Recorder<W> {
 
     /// The log lines of the climber's events.
     fn lines(&self, view: &TickView<'_>) -> Vec<Log> {
-        if view.report.events.is_empty() {
-            return Vec::new();
-        }
-        let ClimberMemory {
-            creature, joints, ..
-        } = &self.memory;
-        let part = Part::of(view.state, view.surface.mesh());
+        let (creature, joints) = (&self.memory.creature, &self.memory.joints);
+        let attached = view.state.support.map(|support| support.attachment);
         let named = |obstacle| {
             let name = name_of(&self.names, obstacle);
-            match part {
-                Some(part) if part.is_on(obstacle) && name == *creature => {
-                    let joint = |joint: JointId| joints.get(joint.index()).map(String::as_str);
-                    part.name(creature, joint)
+            match attached {
+                Some(at) if at.obstacle == obstacle && name == *creature => {
+                    let mesh = view.surface.mesh();
+                    let joint = at.material.triangle().and_then(|one| mesh.joint_of(one));
+                    let joint = joint.and_then(|joint| joints.get(joint.index()));
+                    let joint = joint.filter(|name| !name.is_empty());
+                    part_name(creature, joint.map(String::as_str))
                 }
                 _ => name,
             }
@@ -185,7 +186,7 @@ impl<W: Write> Recorder<W> {
         let figures = &mut self.memory.figures;
         let known = figures.iter().find(|known| known.figure == view.name);
         let (skeleton, palette) = (view.skeleton.joints().len(), view.palette.matrices().len());
-        if palette != skeleton || known.is_some_and(|known| known.len() != skeleton) {
+        if palette != skeleton || known.is_some_and(|known| known.joints.len() != skeleton) {
             return Err(RecordError::FigureJoints {
                 figure: view.name.to_owned(),
                 skeleton,
@@ -248,12 +249,11 @@ impl<W: Write> Recorder<W> {
         &mut self,
         scene: impl FnOnce() -> Result<String, E> + Send + 'static,
     ) -> Result<(), RecordError> {
-        let text = move || match scene() {
-            Ok(text) => Ok(text.into_bytes()),
-            Err(error) => Err(error.to_string()),
+        let text = move || {
+            let text = scene().map_err(|error| error.to_string());
+            text.map(String::into_bytes)
         };
-        let taken = TakenState(Box::new(text));
-        self.chunks.last()?.saved.push(taken);
+        self.chunks.last()?.saved.push(Box::new(text));
         Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! A climber's input and state.
 
 use clamber_climber::{
-    Blow, ClimberInput, ClimberMode, ClimberState, FlyingMemory, HangingMemory, HoldingMemory,
+    ClimberInput, ClimberMode, ClimberState, FlyingMemory, HangingMemory, HoldingMemory, Knockback,
     LedgeHangingMemory, StandingMemory, Support, TumblingMemory,
 };
 use clamber_world::{Attachment, MaterialPoint, ObstacleId, SurfaceKind, SurfaceTag};
@@ -15,17 +15,16 @@ message! {
         climb: Vector (message, required, tag = 2),
         jump: bool (bool, tag = 3),
         grip: bool (bool, tag = 4),
-        blow: Option<Struck> (message, optional, tag = 5),
-        jump_held: bool (bool, tag = 6),
-        actions: u32 (uint32, tag = 7),
-        aim: Vector (message, required, tag = 8),
-        crouch: bool (bool, tag = 9),
+        jump_held: bool (bool, tag = 5),
+        actions: u32 (uint32, tag = 6),
+        aim: Vector (message, required, tag = 7),
+        crouch: bool (bool, tag = 8),
     }
 }
 
 message! {
-    /// A blow that struck the climber.
-    Struck of Blow {
+    /// What a blow did to the climber.
+    Struck of Knockback {
         velocity: Vector (message, required, tag = 1),
         damage: f64 (double, required, tag = 2),
         by: Option<u64> (uint64, optional, tag = 3),
@@ -50,7 +49,7 @@ message! {
         tumbling: Tumbling (message, required, tag = 12),
         coyote: f64 (double, required, tag = 13),
         jump_buffer: f64 (double, required, tag = 14),
-        open_handed: f64 (double, required, tag = 15),
+        grip_cooldown: f64 (double, required, tag = 15),
         crouched: bool (bool, tag = 16),
         crushed: bool (bool, tag = 17),
         base_velocity: Vector (message, required, tag = 18),
@@ -65,7 +64,7 @@ message! {
         load: f64 (double, required, tag = 23),
         holding: Holding (message, required, tag = 24),
         /// Memory of the game's custom modes.
-        memory: Vec<f64> (double, repeated, tag = 25),
+        custom_slots: Vec<f64> (double, repeated, tag = 25),
     }
 }
 

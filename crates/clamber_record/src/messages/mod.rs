@@ -8,7 +8,7 @@ mod climber;
 mod tick;
 mod view;
 
-pub(crate) use climber::{Input, State};
+pub(crate) use climber::{Input, State, Struck};
 pub(crate) use tick::{ArenaTick, Report, Saved, Tick};
 pub(crate) use view::{Brain, Named, Touched};
 

@@ -4,7 +4,7 @@ use clamber_climber::StepReport;
 use glam::DVec3;
 use prost::bytes::Bytes;
 
-use super::{Input, Mirror, State, Vector, message};
+use super::{Input, Mirror, State, Struck, Vector, message};
 
 message! {
     /// A summary of the step's report.
@@ -30,6 +30,7 @@ message! {
         state_fingerprint: u64 (uint64, tag = 5),
         palette_fingerprint: u64 (uint64, tag = 6),
         scene_fingerprint: u64 (uint64, tag = 7),
+        knockback: Option<Struck> (message, optional, tag = 8),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The brain of a creature, as numbers and text.
 
-use clamber_colossus::{Creature, CreatureEvent};
+use clamber_colossus::brain::StateId;
+use clamber_colossus::{Creature, CreatureEvent as Event};
 use foxglove::messages::Log;
 use foxglove::messages::log::Level;
 use glam::DVec3;
@@ -14,7 +15,7 @@ pub(crate) fn brain_lines(creature: &Creature, name: &str) -> Vec<Log> {
     let events = report.events.iter();
     let events = events.filter_map(|event| line(creature, event));
     let blows = report.blows.iter().map(|blow| {
-        let by = path(creature, blow.state);
+        let by = creature.kind().brain().path(blow.state);
         format!("struck person {} with {by}", blow.person)
     });
     let lines = events.chain(blows);
@@ -51,17 +52,12 @@ pub(crate) fn brain(creature: &Creature) -> Brain {
     }
 }
 
-fn path(creature: &Creature, state: clamber_colossus::brain::StateId) -> &str {
-    creature.kind().brain().path(state)
-}
-
 /// The text of an event; `None` for footfalls and markers, which are frequent.
-pub(crate) fn line(creature: &Creature, event: &CreatureEvent) -> Option<String> {
+pub(crate) fn line(creature: &Creature, event: &Event) -> Option<String> {
+    let path = |state: &StateId| creature.kind().brain().path(*state);
     Some(match event {
-        CreatureEvent::Entered { from, to } => {
-            format!("{} to {}", path(creature, *from), path(creature, *to))
-        }
-        CreatureEvent::Hurt {
+        Event::Entered { from, to } => format!("{} to {}", path(from), path(to)),
+        Event::Hurt {
             weak_point,
             damage,
             used_up,
@@ -71,42 +67,40 @@ pub(crate) fn line(creature: &Creature, event: &CreatureEvent) -> Option<String>
             let point = points.get(*weak_point).map_or("", |point| &point.name);
             format!("hurt at weak point {weak_point} ({point}) by {damage:.3}{end}")
         }
-        CreatureEvent::Staggered { plate, breaks } => {
+        Event::Staggered { plate, breaks } => {
             let end = if *breaks { ", which breaks off" } else { "" };
             let plates = &creature.kind().brain().file().body.plates;
             let name = plates.get(*plate).map_or("", |plate| &plate.name);
             format!("staggered by a blow on plate {plate} ({name}){end}")
         }
-        CreatureEvent::Arrived { place } => {
-            format!("is where it was sent, at {}", in_words(*place))
-        }
-        CreatureEvent::Stopped { place } => {
-            let to = in_words(*place);
+        Event::Arrived { place } => format!("is where it was sent, at {}", in_words(place)),
+        Event::Stopped { place } => {
+            let to = in_words(place);
             format!("does not get on to where it was sent, to {to}")
         }
-        CreatureEvent::Threw { state, place, .. } => {
-            let (by, from) = (path(creature, *state), in_words(*place));
+        Event::Threw { state, place, .. } => {
+            let (by, from) = (path(state), in_words(place));
             format!("threw something with {by}, from {from}")
         }
-        CreatureEvent::Burst { state, place, .. } => {
-            let (by, at) = (path(creature, *state), in_words(*place));
+        Event::Burst { state, place, .. } => {
+            let (by, at) = (path(state), in_words(place));
             format!("what it threw with {by} ended at {at}")
         }
-        CreatureEvent::Wave {
+        Event::Wave {
             state,
             place,
             radius,
         } => {
-            let (by, from) = (path(creature, *state), in_words(*place));
+            let (by, from) = (path(state), in_words(place));
             format!("sent out a wave of {radius:.1} m with {by}, from {from}")
         }
-        CreatureEvent::Marker { .. } | CreatureEvent::Plant { .. } => return None,
+        Event::Marker { .. } | Event::Plant { .. } => return None,
         // An event that is newer than this list.
         other => format!("{other:?}"),
     })
 }
 
-fn in_words(place: DVec3) -> String {
+fn in_words(place: &DVec3) -> String {
     let [x, y, z] = place.to_array();
     format!("{x:.1}, {y:.1}, {z:.1}")
 }

@@ -12,7 +12,7 @@ use super::{WORLD, frame, upright};
 pub(crate) struct FigureJoints {
     pub(crate) figure: String,
     /// For each joint, the name of its frame and the index of its parent.
-    joints: Vec<(String, Option<usize>)>,
+    pub(crate) joints: Vec<(String, Option<usize>)>,
 }
 
 impl FigureJoints {
@@ -30,10 +30,6 @@ impl FigureJoints {
             figure: figure.to_owned(),
             joints: skeleton.joints().iter().enumerate().map(named).collect(),
         }
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        self.joints.len()
     }
 }
 

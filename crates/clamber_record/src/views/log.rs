@@ -13,7 +13,7 @@ pub(crate) fn line(climber: &str, event: &Event, named: impl Fn(ObstacleId) -> S
         Event::Jumped => "jumped".to_owned(),
         Event::Slipped => "slipped: too steep".to_owned(),
         Event::LostFooting { from } => format!("lost its footing on {}", on(&from.obstacle)),
-        Event::MovedRepeatedly { obstacle } => {
+        Event::SkippedTicks { obstacle } => {
             format!("{} moved several times since the last step", on(obstacle))
         }
         Event::Thrown { acceleration, .. } => {
@@ -56,7 +56,7 @@ fn level(event: &Event) -> Level {
         Event::NotFinite => Level::Error,
         Event::Slipped
         | Event::LostFooting { .. }
-        | Event::MovedRepeatedly { .. }
+        | Event::SkippedTicks { .. }
         | Event::Thrown { .. }
         | Event::ShakenOff { .. }
         | Event::Tumbled { .. }

@@ -49,21 +49,12 @@ pub(crate) fn timestamp(nanoseconds: u64) -> Timestamp {
     Timestamp::new((nanoseconds / second) as u32, (nanoseconds % second) as u32)
 }
 
-pub(crate) fn vector(v: DVec3) -> Vector3 {
-    Vector3 {
-        x: v.x,
-        y: v.y,
-        z: v.z,
-    }
+pub(crate) fn vector(DVec3 { x, y, z }: DVec3) -> Vector3 {
+    Vector3 { x, y, z }
 }
 
-pub(crate) fn rotation(q: DQuat) -> Quaternion {
-    Quaternion {
-        x: q.x,
-        y: q.y,
-        z: q.z,
-        w: q.w,
-    }
+pub(crate) fn rotation(DQuat { x, y, z, w }: DQuat) -> Quaternion {
+    Quaternion { x, y, z, w }
 }
 
 pub(crate) fn pose(position: DVec3, turn: DQuat) -> Pose {
@@ -77,12 +68,8 @@ pub(crate) fn color(r: f64, g: f64, b: f64, a: f64) -> Color {
     Color { r, g, b, a }
 }
 
-fn point(p: DVec3) -> Point3 {
-    Point3 {
-        x: p.x,
-        y: p.y,
-        z: p.z,
-    }
+fn point(DVec3 { x, y, z }: DVec3) -> Point3 {
+    Point3 { x, y, z }
 }
 
 /// Triangles of one colour, each with the indices of three points.

@@ -175,10 +175,8 @@ fn contact_is_on(taken: &ClimberTick, mesh: &ColliderMesh, positions: &[Vec3]) -
             position += positions.get(corner.index())?.as_dvec3() * weight;
         }
         let in_world = taken.world_from_model.transform_point(position);
-        Some(
-            in_world.distance(support.attachment.point)
-                < 0.01 * taken.world_from_model.scale.max(1.0),
-        )
+        let distance = in_world.distance(support.attachment.point);
+        Some(distance < 0.01 * taken.world_from_model.scale.max(1.0))
     };
     named().unwrap_or(false)
 }

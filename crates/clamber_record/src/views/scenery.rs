@@ -26,7 +26,7 @@ pub struct SceneryView<'a> {
 
 /// The shape of a mesh, for the file.
 #[derive(Debug)]
-struct Shape {
+pub(crate) struct Shape {
     points: Vec<Point3>,
     indices: Vec<u32>,
     color: [f32; 3],
@@ -39,14 +39,7 @@ pub(crate) struct TakenScenery {
     position: DVec3,
     rotation: DQuat,
     /// `Some` in the tick in which the mesh is recorded first.
-    shape: Option<Shape>,
-}
-
-impl TakenScenery {
-    /// True if the mesh is new. Only this tick has its shape.
-    pub(crate) fn has_shape(&self) -> bool {
-        self.shape.is_some()
-    }
+    pub(crate) shape: Option<Shape>,
 }
 
 /// Names of the meshes that were recorded.
@@ -56,12 +49,11 @@ pub(crate) struct SceneryNames(HashSet<Arc<str>>);
 impl SceneryNames {
     /// Copies the shape and the place of a new mesh, or the place of a known one if it is due; otherwise `None`.
     pub(crate) fn take(&mut self, view: &SceneryView<'_>, is_due: bool) -> Option<TakenScenery> {
-        let known = self.0.get(view.name).cloned();
-        let is_new = known.is_none();
-        if !is_new && !is_due {
-            return None;
-        }
-        let name = known.unwrap_or_else(|| Arc::from(view.name));
+        let (name, is_new) = match self.0.get(view.name) {
+            Some(_) if !is_due => return None,
+            Some(known) => (Arc::clone(known), false),
+            None => (Arc::from(view.name), true),
+        };
         if is_new {
             self.0.insert(Arc::clone(&name));
         }
@@ -79,15 +71,10 @@ impl Shape {
         let point = |p: &Vec3| point(p.as_dvec3() * view.world_from_own.scale);
         let count = view.points.len() as u32;
         let sound = |corners: &&[u32; 3]| corners.iter().all(|corner| *corner < count);
+        let triangles = view.triangles.iter();
         Self {
             points: view.points.iter().map(point).collect(),
-            indices: view
-                .triangles
-                .iter()
-                .filter(sound)
-                .flatten()
-                .copied()
-                .collect(),
+            indices: triangles.filter(sound).flatten().copied().collect(),
             color: view.color,
         }
     }
@@ -107,8 +94,8 @@ pub(crate) struct Sceneries {
     bytes: usize,
     /// True once a mesh was left out because of [`MOST`].
     is_full: bool,
-    /// True once the log has said that meshes were left out.
-    has_told: bool,
+    /// The log line that says so, until it is written.
+    pub(crate) line: Option<Log>,
 }
 
 /// Largest size of all meshes together, bytes (64 MiB). All of them are written again for each new mesh, so a higher
@@ -125,12 +112,6 @@ impl Sceneries {
         taken.iter().map(placed).collect()
     }
 
-    /// The log line that says that meshes were left out; `Some` only once.
-    pub(crate) fn take_line(&mut self) -> Option<Log> {
-        let tells = self.is_full && !std::mem::replace(&mut self.has_told, self.is_full);
-        tells.then(|| left_out("further meshes"))
-    }
-
     /// A message with all meshes; `None` if no new one was added.
     pub(crate) fn shapes(
         &mut self,
@@ -145,7 +126,9 @@ impl Sceneries {
                 + one.name.len()
                 + FIXED;
             if self.bytes + bytes > MOST {
-                self.is_full = true;
+                if !std::mem::replace(&mut self.is_full, true) {
+                    self.line = Some(left_out("further meshes"));
+                }
                 continue;
             }
             self.bytes += bytes;

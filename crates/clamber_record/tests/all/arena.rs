@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use clamber_climber::{Blow, ClimberInput, StepRules};
+use clamber_climber::{ClimberInput, Knockback, StepRules};
 use clamber_colossus::{Brain, CreatureConfig, CreatureKind};
 use clamber_fight::{
     Arena, ArenaConfig, ArenaError, ArenaPart, CreatureId, FighterConfig, FighterId, Order,
@@ -324,7 +324,7 @@ fn orders(tick: u64, arena: &Arena) -> Vec<Order> {
         40 => vec![
             Order::Strike {
                 fighter,
-                blow: Blow {
+                knockback: Knockback {
                     velocity: DVec3::new(3.0, 9.0, -0.0),
                     damage: 0.25,
                     by: None,

@@ -91,8 +91,8 @@ fn a_climb_replays_bit_for_bit() {
     });
     let ticks: Vec<_> = recording.ticks().map(|tick| tick.unwrap()).collect();
     let inputs: Vec<_> = ticks.iter().map(|tick| tick.input).collect();
-    // The inputs have no blows: the arena deals them itself, as a result of the inputs.
-    assert!(inputs.iter().all(|input| input.blow.is_none()));
+    // A replay needs no blows: the arena deals them itself, as a result of the inputs.
+    assert!(ticks.iter().all(|tick| tick.knockback.is_none()));
     let is_struck = |tick: &RecordedTick| tick.state.hit_points < 1.0;
     assert!(ticks.iter().any(is_struck));
     assert!(inputs.iter().any(|input| input.climb != DVec3::ZERO));
@@ -392,6 +392,7 @@ fn a_tick_that_is_refused_changes_nothing() {
     let view = |tick, palette| TickView {
         tick,
         input: &battle.input,
+        knockback: None,
         state: battle.climber().state(),
         report: battle.report(),
         surface: battle.surface(),

@@ -75,6 +75,7 @@ pub(crate) fn view<'a>(battle: &'a Battle<'_>) -> TickView<'a> {
     TickView {
         tick: battle.tick(),
         input: &battle.input,
+        knockback: None,
         state: battle.climber().state(),
         report: battle.report(),
         surface: battle.surface(),

@@ -107,7 +107,7 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
     let mut surface = SkinnedSurface::new(giant.rig.collider.clone());
     let root = Similarity::from_translation(DVec3::new(3e4, 0.0, -7e3));
     for palette in palettes(&giant) {
-        surface.place(&palette, root).unwrap();
+        surface.teleport(&palette, root).unwrap();
         let above = root.translation + DVec3::new(0.4, 60.0, 0.4);
         let hit = surface.in_world().cast_ray(above, -DVec3::Y, 100.0);
         let Some(hit) = hit.filter(|hit| hit.normal.y > 0.4) else {

@@ -17,7 +17,7 @@ use super::triangle::{first_contact_relative, nearest_to_axis};
 /// let ball = MovingCapsule::ball(DVec3::new(0.2, 2.0, 0.2), DVec3::NEG_Y * 4.0, 0.5);
 /// let triangle = [DVec3::ZERO, DVec3::Z, DVec3::X];
 /// let touch = ball.cast_at_triangle([triangle; 2], 1e-4, 1.0).unwrap();
-/// assert!((touch.time - 0.375).abs() < 1e-4);
+/// assert!((touch.fraction - 0.375).abs() < 1e-4);
 /// assert!((touch.separation_normal - DVec3::Y).length() < 1e-6);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -45,12 +45,12 @@ impl<'a> MeshSource<'a> {
     /// A rigid mesh: joint 0, the only joint, moves every vertex.
     ///
     /// ```
-    /// use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource, VertexId};
+    /// use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource, VertexId};
     /// use clamber_surface::rig::JointId;
     /// use glam::Vec3;
     ///
     /// let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
-    /// let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
+    /// let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default())?;
     /// assert!(mesh.influences(VertexId(2)).eq([(JointId(0), 1.0)]));
     /// # Ok::<(), clamber_surface::mesh::MeshError>(())
     /// ```
@@ -72,7 +72,7 @@ impl<'a> MeshSource<'a> {
 /// Treatment of vertices that coincide at rest but have different influences.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Cracks {
+pub enum CrackPolicy {
     /// Keep them apart and count them in [`BuildReport::cracks`]. The surface can open there when it is posed.
     #[default]
     Report,
@@ -93,9 +93,9 @@ pub enum Winding {
 
 /// Options of [`ColliderMesh::build`]. The default suits a well-made file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct BuildOptions {
+pub struct ColliderBuildOptions {
     /// Treatment of coincident vertices that have different influences.
-    pub cracks: Cracks,
+    pub cracks: CrackPolicy,
     /// Which side of the triangles is outside.
     pub winding: Winding,
 }
@@ -110,7 +110,7 @@ pub struct BuildReport {
     pub welded: usize,
     /// Number of vertices that coincide at rest with another vertex but were kept apart, because their influences
     /// differ; of each group of coincident vertices, one is not counted. The surface can crack there. 0 under
-    /// [`Cracks::Unify`].
+    /// [`CrackPolicy::Unify`].
     pub cracks: usize,
     /// Number of triangles of the built mesh.
     pub triangles: usize,
@@ -138,11 +138,11 @@ impl ColliderMesh {
     /// that moves it most.
     ///
     /// ```
-    /// use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+    /// use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource};
     /// use glam::Vec3;
     ///
     /// let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2], [2, 0, 1]]);
-    /// let (mesh, report) = ColliderMesh::build(&source, &BuildOptions::default())?;
+    /// let (mesh, report) = ColliderMesh::build(&source, &ColliderBuildOptions::default())?;
     /// assert_eq!(mesh.triangles().len(), 1);
     /// assert_eq!(report.duplicate_triangles, 1);
     /// assert_eq!(report.source_triangles, [0]);
@@ -154,15 +154,15 @@ impl ColliderMesh {
     /// names what is wrong, and where.
     pub fn build(
         source: &MeshSource<'_>,
-        options: &BuildOptions,
+        options: &ColliderBuildOptions,
     ) -> Result<(Self, BuildReport), MeshError> {
         validate(source)?;
         let mut report = BuildReport::default();
         let mut keys = vertex_keys(source, &mut report)?;
         let split = coincident_groups(&keys);
         match options.cracks {
-            Cracks::Report => report.cracks = split.iter().map(|g| g.kinds - 1).sum(),
-            Cracks::Unify => unify(&mut keys, &split),
+            CrackPolicy::Report => report.cracks = split.iter().map(|g| g.kinds - 1).sum(),
+            CrackPolicy::Unify => unify(&mut keys, &split),
         }
         let (mut mesh, vertex_of) = weld(source, &keys);
         report.vertices = mesh.positions.len();

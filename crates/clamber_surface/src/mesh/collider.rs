@@ -127,11 +127,11 @@ impl ColliderMesh {
     /// included, with the tag that it has. Ids and points of either mesh are valid on both.
     ///
     /// ```
-    /// use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource, SurfaceKind, SurfaceTag};
+    /// use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource, SurfaceKind, SurfaceTag};
     /// use glam::Vec3;
     ///
     /// let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
-    /// let (skin, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
+    /// let (skin, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default())?;
     /// let fur = skin.with_tags(|_, tag| SurfaceTag { kind: SurfaceKind::Fur, ..tag });
     /// assert_eq!(fur.tags()[0].kind, SurfaceKind::Fur);
     /// assert_eq!(fur.id(), skin.id());

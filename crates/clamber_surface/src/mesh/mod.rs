@@ -20,7 +20,7 @@ mod tag;
 mod tags;
 mod weights;
 
-pub use build::{BuildOptions, BuildReport, Cracks, MeshSource, Winding};
+pub use build::{BuildReport, ColliderBuildOptions, CrackPolicy, MeshSource, Winding};
 pub(crate) use collider::check_matrices;
 pub use collider::{ColliderMesh, IslandId, PartId, TriangleId, VertexId};
 pub(crate) use edit::Reclustered;

@@ -17,7 +17,7 @@ const JUMP: f64 = 1.0 / 100.0;
 /// one interval. Otherwise it is a little longer than the second longest of the last 32 intervals, since the longest
 /// one may be a single pose that came late. The lag changes by at most 1/200 of a tick in each tick, unless it is more
 /// than twice as long as it should be. If a tick would see a later time than the newest pose has, it sees the newest
-/// pose, and is [`PoseMotion::Placed`]. The first tick that is on time again is placed as well.
+/// pose, and is [`PoseMotion::Teleported`]. The first tick that is on time again is placed as well.
 ///
 /// For poses of joints, [`PoseTrack`](super::PoseTrack) does all of this. A clock alone is for engines that have their
 /// own poses, together with a [`PoseHistory`](super::PoseHistory). Times are in seconds, from any zero.
@@ -76,7 +76,7 @@ impl PoseClock {
     }
 
     /// Makes a tick of `dt` seconds that ends at `now`, and chooses the time whose pose it sees: [`PoseClock::time`].
-    /// Returns [`PoseMotion::Placed`] if this time is not `dt` later than in the last tick, in the first tick, and
+    /// Returns [`PoseMotion::Teleported`] if this time is not `dt` later than in the last tick, in the first tick, and
     /// before the first pose. A tick before the last one sees the same time as the last one.
     ///
     /// # Errors
@@ -87,7 +87,7 @@ impl PoseClock {
         check_time("the tick's end", now, Some(now - dt))?;
         let Some(newest) = self.newest else {
             self.has_jumped = true;
-            return Ok(PoseMotion::Placed);
+            return Ok(PoseMotion::Teleported);
         };
         self.waited = self.waited.max(now - newest);
         let wanted = self.wanted_lag();
@@ -119,7 +119,7 @@ impl PoseClock {
     /// The result of the last [`PoseClock::tick`].
     pub fn motion(&self) -> PoseMotion {
         if self.has_jumped {
-            PoseMotion::Placed
+            PoseMotion::Teleported
         } else {
             PoseMotion::Moved
         }

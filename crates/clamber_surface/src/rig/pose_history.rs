@@ -40,7 +40,7 @@ struct Sample<P> {
 pub struct Between {
     /// Share of the way from the first pose to the second, 0 to 1.
     pub fraction: f64,
-    /// [`PoseMotion::Placed`] if the creature was placed since the last time that was asked for.
+    /// [`PoseMotion::Teleported`] if the creature was placed since the last time that was asked for.
     pub motion: PoseMotion,
 }
 
@@ -70,7 +70,7 @@ impl<P> PoseHistory<P> {
             && last.from == time
         {
             let old = std::mem::replace(&mut last.pose, pose);
-            if motion == PoseMotion::Placed {
+            if motion == PoseMotion::Teleported {
                 last.motion = motion;
             }
             self.spare.push(old);
@@ -154,7 +154,7 @@ impl<P> PoseHistory<P> {
             fraction: match next.motion {
                 PoseMotion::Moved => (time - first.until) / (next.from - first.until),
                 // After the last pose before a teleport, the creature is where the teleport took it.
-                PoseMotion::Placed => 1.0,
+                PoseMotion::Teleported => 1.0,
             },
             motion: motion.and(next.motion),
         }

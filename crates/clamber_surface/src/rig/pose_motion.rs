@@ -7,13 +7,17 @@ pub enum PoseMotion {
     #[default]
     Moved,
     /// The creature was teleported there, or its motion is not known: pose the surface by
-    /// [`SkinnedSurface::place`](crate::surface::SkinnedSurface::place), without motion.
-    Placed,
+    /// [`SkinnedSurface::teleport`](crate::surface::SkinnedSurface::teleport), without motion.
+    Teleported,
 }
 
 impl PoseMotion {
     /// Two motions, one after the other: placed if either is.
     pub(super) fn and(self, other: Self) -> Self {
-        if other == Self::Placed { other } else { self }
+        if other == Self::Teleported {
+            other
+        } else {
+            self
+        }
     }
 }

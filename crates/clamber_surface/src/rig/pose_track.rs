@@ -38,7 +38,7 @@ use crate::geometry::{Similarity, slerp};
 ///     }
 ///     match track.tick(now, DT)? {
 ///         PoseMotion::Moved => {} // surface.advance(&palette, *track.world_from_model())?
-///         PoseMotion::Placed => {} // surface.place(&palette, *track.world_from_model())?
+///         PoseMotion::Teleported => {} // surface.teleport(&palette, *track.world_from_model())?
 ///     }
 ///     let y = track.pose().transforms[0].translation.y;
 ///     assert!(tick <= 3 || (y - before - 0.01).abs() < 1e-6); // evenly
@@ -134,7 +134,7 @@ impl PoseTrack {
         let time = self.clock.time();
         if time < start + dt * WHOLE {
             // The motion before the first pose is not known, and a velocity that jumps would shake riders off.
-            motion = PoseMotion::Placed;
+            motion = PoseMotion::Teleported;
         }
         let at = self.history.advance(time);
         if let Some((from, to)) = self.history.poses(at) {

@@ -43,7 +43,7 @@ pub struct ClusterState<'a> {
 }
 
 impl SkinnedSurface {
-    /// Counts what queries touched since the last [`SkinnedSurface::advance`] or [`SkinnedSurface::place`]. Clusters
+    /// Counts what queries touched since the last [`SkinnedSurface::advance`] or [`SkinnedSurface::teleport`]. Clusters
     /// that an edit has replaced since then no longer count. Takes O(clusters).
     pub fn diagnostics(&self) -> Diagnostics {
         let (pose, mesh) = (&self.instance.current, self.mesh());
@@ -62,7 +62,7 @@ impl SkinnedSurface {
     }
 
     /// All clusters that have triangles, and whether queries used them since the last [`SkinnedSurface::advance`] or
-    /// [`SkinnedSurface::place`]. Takes O(clusters).
+    /// [`SkinnedSurface::teleport`]. Takes O(clusters).
     pub fn clusters(&self) -> impl Iterator<Item = ClusterState<'_>> {
         let clusters = self.mesh().clusters();
         let mut touched = self.instance.current.asked_clusters().peekable();
@@ -77,7 +77,7 @@ impl SkinnedSurface {
     }
 
     /// The triangles of the clusters that queries reached since the last [`SkinnedSurface::advance`] or
-    /// [`SkinnedSurface::place`], cluster by cluster. Takes O(clusters).
+    /// [`SkinnedSurface::teleport`], cluster by cluster. Takes O(clusters).
     pub fn touched_triangles(&self) -> impl Iterator<Item = TriangleId> {
         let touched = self.clusters().filter(|cluster| cluster.touched);
         touched.flat_map(|cluster| cluster.triangles.iter().copied())

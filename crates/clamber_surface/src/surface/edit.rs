@@ -66,14 +66,14 @@ impl SkinnedSurface {
     ///
     /// ```
     /// # use std::sync::Arc;
-    /// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceTag};
+    /// # use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, Influence, MeshSource, SurfaceTag};
     /// # use clamber_surface::mesh::{TriangleId, VertexId};
     /// # use clamber_surface::rig::JointId;
     /// # use clamber_surface::surface::{SkinnedSurface, SurfaceError};
     /// # use glam::Vec3;
     /// # let bone = Influence { joint: JointId(0), weight: 1.0 };
     /// # let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
-    /// # let mesh = ColliderMesh::build(&source, &BuildOptions::default())?.0;
+    /// # let mesh = ColliderMesh::build(&source, &ColliderBuildOptions::default())?.0;
     /// # let mut surface = SkinnedSurface::new(Arc::new(mesh));
     /// let scab = surface.edit(|edit| {
     ///     let tip = edit.add_vertex(Vec3::Z, &[bone])?;

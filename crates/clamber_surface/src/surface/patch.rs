@@ -15,12 +15,12 @@ use crate::query::MovingTriangle;
 /// ```
 /// # use std::sync::Arc;
 /// # use clamber_surface::geometry::{Affine, Similarity};
-/// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource, TriangleId};
+/// # use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource, TriangleId};
 /// # use clamber_surface::rig::Palette;
 /// # use clamber_surface::surface::{Patch, PatchChange, SkinnedSurface};
 /// # use glam::Vec3;
 /// # let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
-/// # let mesh = ColliderMesh::build(&source, &BuildOptions::default())?.0;
+/// # let mesh = ColliderMesh::build(&source, &ColliderBuildOptions::default())?.0;
 /// let mut surface = SkinnedSurface::new(Arc::new(mesh));
 /// let mut patch = Patch::default();
 /// let (low, high) = (Vec3::splat(-0.1), Vec3::splat(0.1));

@@ -19,14 +19,14 @@ use crate::skin::skin_checked;
 /// ```
 /// use std::sync::Arc;
 /// use clamber_surface::geometry::{Affine, Ray, Similarity};
-/// use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+/// use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource};
 /// use clamber_surface::rig::Palette;
 /// use clamber_surface::surface::SkinnedSurface;
 /// use glam::Vec3;
 ///
 /// let (mesh, _) = ColliderMesh::build(
 ///     &MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]),
-///     &BuildOptions::default(),
+///     &ColliderBuildOptions::default(),
 /// )?;
 /// let mut surface = SkinnedSurface::new(Arc::new(mesh));
 /// let mut lifted = Affine::IDENTITY;
@@ -42,7 +42,7 @@ use crate::skin::skin_checked;
 pub struct SkinnedSurface {
     pub(crate) instance: Instance,
     world_from_model: Similarity,
-    /// [`SkinnedSurface::is_placed`].
+    /// [`SkinnedSurface::was_teleported`].
     placed: bool,
     /// [`SkinnedSurface::bounding_ball`].
     ball: Option<(DVec3, f64)>,
@@ -116,7 +116,7 @@ impl SkinnedSurface {
     /// # Errors
     /// [`SurfaceError::Palette`] about the given palette, [`SurfaceError::WorldFromModel`] if `world_from_model` is not
     /// [valid](Similarity::is_valid). The surface is unchanged then.
-    pub fn place(
+    pub fn teleport(
         &mut self,
         palette: &Palette,
         world_from_model: Similarity,
@@ -131,9 +131,9 @@ impl SkinnedSurface {
         Ok(())
     }
 
-    /// True if the surface was last posed by [`SkinnedSurface::place`], or is new; false after
+    /// True if the surface was last posed by [`SkinnedSurface::teleport`], or is new; false after
     /// [`SkinnedSurface::advance`].
-    pub const fn is_placed(&self) -> bool {
+    pub const fn was_teleported(&self) -> bool {
         self.placed
     }
 
@@ -143,7 +143,7 @@ impl SkinnedSurface {
     /// For a creature that is neither touched nor drawn: its clips, its palette and [`SkinnedSurface::advance`] can be
     /// skipped. Queries still work. Costs O(joints), once.
     ///
-    /// To wake the surface, [`SkinnedSurface::place`] it where it is by then. `advance` would take the whole way since
+    /// To wake the surface, [`SkinnedSurface::teleport`] it where it is by then. `advance` would take the whole way since
     /// it fell asleep for the motion of one tick.
     pub fn sleep(&mut self) {
         let Instance {

@@ -174,7 +174,7 @@ impl Tick<'_> {
         let (end, velocity) = (*body.position(), body.linvel().as_dvec3());
         let known = self.seen.binary_search_by_key(obstacle, |(id, _)| *id);
         let jumped = known.is_ok_and(|known| self.seen[known].1.jumped);
-        let skin = if jumped && surface.is_placed() {
+        let skin = if jumped && surface.was_teleported() {
             Skin::Placed
         } else {
             Skin::Moved

@@ -29,7 +29,7 @@ use crate::ObstacleId;
 /// of the skin closes, such as between head and shoulder.
 ///
 /// Skin may also appear around a body: a stone breaks off below the skin, or a creature is new, is
-/// [placed](SkinnedSurface::place), is [edited](SkinnedSurface::edit) or shows a part again where bodies are. A body
+/// [placed](SkinnedSurface::teleport), is [edited](SkinnedSurface::edit) or shows a part again where bodies are. A body
 /// that is no deeper below the skin than the radius of the largest ball in it is moved out of the creature within a
 /// split second, by the shortest way ([`Debris::is_put_out`]). Skin passes through a deeper body, and through a body
 /// whose way out is blocked ([`Debris::is_let_through`]): such a body falls through the creature, or lies on the ground
@@ -59,14 +59,14 @@ use crate::ObstacleId;
 /// ```
 /// # use std::sync::Arc;
 /// # use clamber_surface::geometry::Similarity;
-/// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+/// # use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource};
 /// # use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 /// # use glam::Vec3;
 /// use clamber_world::rapier3d::prelude::*;
 /// use clamber_world::{Debris, DebrisConfig, ObstacleId};
 /// # let positions = [Vec3::ZERO, Vec3::X, Vec3::Z].map(|p| p * 9.0 - Vec3::new(3.0, 0.0, 3.0));
 /// # let source = MeshSource::rigid(&positions, &[[0, 2, 1]]);
-/// # let mesh = ColliderMesh::build(&source, &BuildOptions::default())?.0;
+/// # let mesh = ColliderMesh::build(&source, &ColliderBuildOptions::default())?.0;
 /// # let mut surface = SkinnedSurface::new(Arc::new(mesh));
 /// # let palette = clamber_surface::rig::Palette::from_matrices([clamber_surface::geometry::Affine::IDENTITY]);
 ///

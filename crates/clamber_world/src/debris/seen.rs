@@ -20,7 +20,7 @@ const ROUNDING: f64 = 16.0 * f32::EPSILON as f64;
 
 /// A surface as it was in the last tick.
 ///
-/// A jump is noticed by where the skin was, not by calls of [`SkinnedSurface::place`] or a count of poses. These may
+/// A jump is noticed by where the skin was, not by calls of [`SkinnedSurface::teleport`] or a count of poses. These may
 /// differ after debris was restored from a snapshot, and the run would then go on differently.
 #[derive(Clone, Debug)]
 pub(super) struct Seen {

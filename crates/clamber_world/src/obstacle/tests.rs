@@ -44,7 +44,7 @@ fn rubble() -> (SkinnedSurface, DVec3) {
     let triangles: Vec<[u32; 3]> = (0..80).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let mut skin = rigid(&positions, &triangles);
     let place = DVec3::new(60.0, 0.0, -80.0);
-    skin.place(&rest(), Similarity::from_translation(place))
+    skin.teleport(&rest(), Similarity::from_translation(place))
         .unwrap();
     (skin, place)
 }
@@ -153,8 +153,11 @@ fn one_number_that_is_not_finite_is_found_wherever_it_stands() {
 #[test]
 fn a_translated_point_moves_without_turning() {
     let motion = PointMotion::translated(DVec3::X, DVec3::X * 1.5, 0.1);
-    assert_eq!((motion.velocity, motion.placed), (DVec3::X * 5.0, false));
+    assert_eq!(
+        (motion.velocity, motion.was_teleported),
+        (DVec3::X * 5.0, false)
+    );
     let still = PointMotion::translated(DVec3::X, DVec3::X, 0.0);
-    assert_eq!((still.velocity, still.placed), (DVec3::ZERO, true));
+    assert_eq!((still.velocity, still.was_teleported), (DVec3::ZERO, true));
     assert!(motion.is_finite() && still.is_finite());
 }

@@ -6,6 +6,6 @@ mod push;
 mod terrain;
 
 pub use poses::BodyPoses;
-pub use proxy::{ClimberProxy, ProxyHit};
+pub use proxy::{ClimberProxy, ProxyImpulse};
 pub use push::apply_push;
 pub use terrain::RapierTerrain;

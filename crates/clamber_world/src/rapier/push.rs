@@ -27,7 +27,7 @@ use crate::MaterialPoint;
 /// let terrain = RapierTerrain::of_world(&world, &before);
 /// let touched = terrain.closest_point(DVec3::X * 2.0, 3.0).unwrap().material;
 /// // 1 N s along X moves 20 kg, hit in the middle, by 0.05 m/s.
-/// assert!((terrain.push_response(&touched, DVec3::X) - 0.05).abs() < 1e-6);
+/// assert!((terrain.inverse_effective_mass(&touched, DVec3::X) - 0.05).abs() < 1e-6);
 /// apply_push(&mut world.bodies, &world.colliders, &touched, DVec3::X * 10.0);
 /// assert!((world.bodies[crate_body].linvel().x - 0.5).abs() < 1e-6);
 /// ```
@@ -50,9 +50,9 @@ pub fn apply_push(
     }
 }
 
-/// [`Obstacle::push_response`](crate::Obstacle::push_response) of a rapier world. Joints are ignored: a jointed body
+/// [`Obstacle::inverse_effective_mass`](crate::Obstacle::inverse_effective_mass) of a rapier world. Joints are ignored: a jointed body
 /// responds as if it were free.
-pub(super) fn push_response(
+pub(super) fn inverse_effective_mass(
     bodies: &RigidBodySet,
     colliders: &ColliderSet,
     point: &MaterialPoint,

@@ -11,7 +11,7 @@ use rapier3d::parry::shape::Shape;
 use rapier3d::pipeline::{PhysicsWorld, QueryFilter, QueryPipeline};
 
 use super::BodyPoses;
-use super::push::push_response;
+use super::push::inverse_effective_mass;
 use crate::shapes::{
     FirstContact, Moved, SweptBounds, Tick, closest_by_overlap, holds, overlap_shape, sort_contacts,
 };
@@ -431,11 +431,11 @@ impl Obstacle for RapierTerrain<'_> {
         Some(self.tagged(first.contact(self.origin)?))
     }
 
-    fn push_response(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
-        push_response(self.bodies, self.colliders, point, direction)
+    fn inverse_effective_mass(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
+        inverse_effective_mass(self.bodies, self.colliders, point, direction)
     }
 
-    fn body_of(&self, point: &MaterialPoint) -> u64 {
+    fn rigid_body_id(&self, point: &MaterialPoint) -> u64 {
         point.key
     }
 

@@ -24,7 +24,7 @@ use crate::{Contact, SweepContact, WorldCapsule};
 /// let pose = RigidPose { rotation: DQuat::IDENTITY, translation: DVec3::ZERO };
 /// first.meet(&Ball::new(0.5), &Tick::still(pose), 7);
 /// let contact = first.contact(DVec3::ZERO).unwrap();
-/// assert!((contact.time - 0.5).abs() < 1e-4);
+/// assert!((contact.fraction - 0.5).abs() < 1e-4);
 /// assert_eq!(contact.contact.material.key, 7);
 /// ```
 #[derive(Clone, Copy, Debug)]

@@ -17,7 +17,7 @@ fn placed() -> (SkinnedSurface, Similarity) {
     };
     let corners = [(-1., -1.), (-1., 1.), (1., 1.), (1., -1.)].map(|(x, z)| Vec3::new(x, 0., z));
     let mut surface = rigid(&corners, &[[0, 1, 2], [0, 2, 3]]);
-    surface.place(&rest(), world_from_model).unwrap();
+    surface.teleport(&rest(), world_from_model).unwrap();
     (surface, world_from_model)
 }
 

@@ -4,7 +4,7 @@ use std::error::Error;
 
 use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode, StepRules};
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
@@ -104,9 +104,9 @@ fn ground() -> Result<SkinnedSurface, Box<dyn Error>> {
     let corners = [(-30.0, -30.0), (30.0, -30.0), (30.0, 30.0), (-30.0, 30.0)];
     let positions = corners.map(|(x, y)| Vec3::new(x, y, -GROUND as f32));
     let source = MeshSource::rigid(&positions, &[[0, 1, 2], [0, 2, 3]]);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
+    let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default())?;
     let mut ground = SkinnedSurface::new(std::sync::Arc::new(mesh));
     let rest = Palette::from_matrices([Affine::IDENTITY]);
-    ground.place(&rest, Similarity::IDENTITY)?;
+    ground.teleport(&rest, Similarity::IDENTITY)?;
     Ok(ground)
 }

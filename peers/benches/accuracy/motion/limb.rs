@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use clamber_surface::geometry::{Affine, rotation_from_axis_angle};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshError, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshError, MeshSource};
 use clamber_surface::rig::Palette;
 use clamber_surface::skin::skin_into;
 use clamber_verify::brute_force::Triangles;
@@ -84,7 +84,7 @@ pub(crate) fn limb() -> Result<Arc<ColliderMesh>, MeshError> {
     }
     let source = MeshSource::rigid(&positions, &triangles);
     Ok(Arc::new(
-        ColliderMesh::build(&source, &BuildOptions::default())?.0,
+        ColliderMesh::build(&source, &ColliderBuildOptions::default())?.0,
     ))
 }
 

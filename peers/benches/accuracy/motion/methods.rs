@@ -98,8 +98,8 @@ impl Body {
             hits: Vec::new(),
         };
         let palette = course.palette(0.0);
-        body.surface.place(&palette, Similarity::IDENTITY)?;
-        body.before.place(&palette, Similarity::IDENTITY)?;
+        body.surface.teleport(&palette, Similarity::IDENTITY)?;
+        body.before.teleport(&palette, Similarity::IDENTITY)?;
         Ok(body)
     }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use clamber_peers::ball;
 use clamber_scenes::giant::giant;
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::rig::Palette;
 use clamber_surface::skin::skin_into;
 use clamber_verify::brute_force::{Corners, Triangles};
@@ -172,5 +172,5 @@ fn query(&[a, b, c]: &Corners, aim: Aim, rng: &mut fastrand::Rng) -> Option<Quer
 fn needles() -> Result<ColliderMesh, Box<dyn Error>> {
     let (positions, triangles) = ball(6, 2_048, |_, _| 5.0);
     let source = MeshSource::rigid(&positions, &triangles);
-    Ok(ColliderMesh::build(&source, &BuildOptions::default())?.0)
+    Ok(ColliderMesh::build(&source, &ColliderBuildOptions::default())?.0)
 }

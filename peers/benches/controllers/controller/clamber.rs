@@ -9,7 +9,7 @@ use clamber_scenes::controllers::{
     Controller, HEIGHT, Input, Mesh, Motion, PADDING, RADIUS, SNAP, STEP, Set,
 };
 use clamber_surface::geometry::Affine;
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::rapier3d::prelude::RigidBodyBuilder;
@@ -109,7 +109,7 @@ impl Solids {
         let mut surfaces = Vec::new();
         for piece in &set.pieces {
             let mut surface = SkinnedSurface::new(collider(&piece.solid.mesh())?);
-            surface.place(&rest, (piece.motion)(0.0))?;
+            surface.teleport(&rest, (piece.motion)(0.0))?;
             surfaces.push((surface, piece.motion.clone()));
         }
         Ok(Self::Skin(surfaces, rest))
@@ -120,7 +120,7 @@ impl Solids {
 fn collider(mesh: &Mesh) -> Result<Arc<ColliderMesh>, Box<dyn Error>> {
     let positions: Vec<_> = mesh.positions.iter().map(|p| p.as_vec3()).collect();
     let source = MeshSource::rigid(&positions, &mesh.triangles);
-    let (collider, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
+    let (collider, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default())?;
     Ok(Arc::new(collider))
 }
 

@@ -12,7 +12,7 @@ use super::choreography::no_height;
 use super::eyes::Eyes;
 use super::fencer::Fencer;
 use super::outcrop::Crossing;
-use super::{BattleOptions, CREATURE, SceneError, TICK};
+use super::{BattleOptions, CREATURE, GRIP, SceneError, TICK};
 use crate::{Creature, valley};
 
 /// Place where the creature begins, x and z, metres: beyond the outcrop.
@@ -78,41 +78,29 @@ pub(super) fn giant(arena: &Arena) -> &clamber_colossus::Creature {
     arena.creature(CreatureId(0)).expect("there is a creature")
 }
 
-/// What the bot sees of the creature's actions.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Sight {
-    /// The creature stays where it is.
-    stays: bool,
-    /// The creature raises a limb against somebody, or strikes, or its wave or shot is on its way.
-    pub(super) attacks: bool,
-}
-
-impl Sight {
-    fn of(life: &clamber_colossus::Creature) -> Self {
-        let attack = life.attack().map(|(_, phase)| phase);
-        let attacks = matches!(attack, Some(AttackPhase::WindUp | AttackPhase::Active))
-            || life.waves().next().is_some()
-            || life.shots().next().is_some();
-        Self {
-            stays: life.state().speed().abs() < 0.5,
-            attacks,
-        }
+/// What the bot sees of the creature's actions. A creature attacks if it raises a limb against somebody, or strikes, or
+/// its wave or shot is on its way.
+fn danger(life: &clamber_colossus::Creature) -> Danger {
+    let attack = life.attack().map(|(_, phase)| phase);
+    if matches!(attack, Some(AttackPhase::WindUp | AttackPhase::Active))
+        || life.waves().next().is_some()
+        || life.shots().next().is_some()
+    {
+        Danger::Attacks
+    } else if life.state().speed().abs() < 0.5 {
+        Danger::None
+    } else {
+        Danger::Moves
     }
-}
-
-/// What to strike.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Aim {
-    /// The weak point, by its index.
-    pub(super) weak_point: usize,
-    /// The plate over the weak point, by its index.
-    pub(super) plate: Option<usize>,
 }
 
 /// What to strike, and the ways there.
 #[derive(Clone, Debug)]
-struct Target {
-    aim: Aim,
+pub(super) struct Target {
+    /// The weak point, by its index.
+    pub(super) weak_point: usize,
+    /// The plate over the weak point, by its index.
+    pub(super) plate: Option<usize>,
     goal: Goal,
 }
 
@@ -153,9 +141,8 @@ impl Planner {
         let forecast = Forecast::still()
             .then(&graph, "idle", 0.0, 4.5)
             .then(&graph, "shake", 0.0, 4.5);
-        let places =
-            (0..life.kind().weak_points().len()).map(|index| (place(life, index).y, index));
-        let highest = places.max_by(|a, b| a.0.total_cmp(&b.0));
+        let height = |point: &usize| place(life, *point).y;
+        let points = 0..life.kind().weak_points().len();
         Ok(Self {
             bot: Bot::new(graph, BotConfig::default()),
             targets,
@@ -164,7 +151,7 @@ impl Planner {
             fencer: Fencer::default(),
             crossing: Crossing::default(),
             eyes: Eyes::new(&creature.rig.collider),
-            highest: highest.map(|(_, index)| index),
+            highest: points.max_by(|a, b| height(a).total_cmp(&height(b))),
             arrived: None,
         })
     }
@@ -184,7 +171,8 @@ impl Planner {
     /// The input of the tick that begins at `seconds`.
     pub(super) fn input(&mut self, arena: &Arena, seconds: f64) -> ClimberInput {
         let (life, fighter) = (giant(arena), &arena.fighters()[0]);
-        let sight = Sight::of(life);
+        let danger = danger(life);
+        let is_attacked = danger == Danger::Attacks;
         self.choose(arena);
         let climber = fighter.climber();
         let shake_ahead = self.eyes.shake_ahead(life, climber);
@@ -197,47 +185,39 @@ impl Planner {
             surface: life.surface(),
             goal: &target.goal,
             forecast: &self.forecast,
-            danger: match sight {
-                Sight { attacks: true, .. } => Danger::Attacks,
-                Sight { stays: true, .. } => Danger::None,
-                _ => Danger::Moves,
-            },
+            danger,
             shake_ahead,
         };
         let support = state.support.map(|support| support.attachment.obstacle);
         if support != Some(CREATURE) {
-            if let Some(input) = self.crossing.input(climber, seconds, sight.attacks) {
+            if let Some(input) = self.crossing.input(climber, seconds, is_attacked) {
                 return input;
             }
             if state.mode == ClimberMode::Standing
-                && let Some(shot) = self.fencer.shoot(arena, sight)
+                && let Some(shot) = self.fencer.shoot(arena, is_attacked)
             {
                 return shot;
             }
             return self.bot.input(&view);
         }
-        if let Some(stab) = self.fencer.stab(arena, target.aim) {
+        if let Some(stab) = self.fencer.stab(arena, target) {
             return stab;
         }
         let is_there = self.bot.is_there(&view);
         if self.bot.wants_rest(&view) || !is_there {
             return self.bot.input(&view);
         }
-        if Some(target.aim.weak_point) == self.highest {
+        if Some(target.weak_point) == self.highest {
             self.arrived.get_or_insert(seconds);
         }
-        let hold = ClimberInput {
-            grip: true,
-            ..ClimberInput::IDLE
-        };
-        if !life.is_open(target.aim.weak_point) || state.shake.length() > STEADY {
-            return hold;
+        if !life.is_open(target.weak_point) || state.shake.length() > STEADY {
+            return GRIP;
         }
-        match self.fencer.miss(arena, target.aim) {
+        match self.fencer.miss(arena, target) {
             Some(miss) => ClimberInput {
                 climb: miss.normalize_or_zero(),
                 walk: miss,
-                ..hold
+                ..GRIP
             },
             None => self.bot.input(&view),
         }
@@ -259,10 +239,7 @@ impl Planner {
             let goal = &self.targets[*target].goal;
             here.map_or(0.0, |here| goal.least_seconds_from(here))
         };
-        let nearest = open
-            .iter()
-            .copied()
-            .min_by(|a, b| left(a).total_cmp(&left(b)));
+        let nearest = open.into_iter().min_by(|a, b| left(a).total_cmp(&left(b)));
         self.at = nearest.unwrap_or(0);
         self.bot.forget();
     }
@@ -272,22 +249,16 @@ impl Planner {
     fn open(&self, life: &clamber_colossus::Creature) -> Vec<usize> {
         let is_whole = |plate: usize| life.state().plate(plate) > 0;
         let is_next = |index: &usize| {
-            let aim = self.targets[*index].aim;
-            let left = life.state().hit_points().get(aim.weak_point);
-            let mut others = self.targets.iter().map(|target| target.aim);
-            left.is_some_and(|left| *left > 0.0)
-                && aim.plate.map_or_else(
-                    || {
-                        let covers = |other: Aim| {
-                            other.weak_point == aim.weak_point && other.plate.is_some_and(is_whole)
-                        };
-                        !others.any(covers)
-                    },
-                    is_whole,
-                )
+            let target = &self.targets[*index];
+            let covers = |other: &Target| {
+                other.weak_point == target.weak_point && other.plate.is_some_and(is_whole)
+            };
+            let is_bare = || !self.targets.iter().any(covers);
+            let left = life.state().hit_points().get(target.weak_point);
+            left.is_some_and(|left| *left > 0.0) && target.plate.map_or_else(is_bare, is_whole)
         };
         let next: Vec<usize> = (0..self.targets.len()).filter(is_next).collect();
-        let is_open = |index: &usize| life.is_open(self.targets[*index].aim.weak_point);
+        let is_open = |index: &usize| life.is_open(self.targets[*index].weak_point);
         let open: Vec<usize> = next.iter().copied().filter(is_open).collect();
         if open.is_empty() { next } else { open }
     }
@@ -299,10 +270,9 @@ fn place(life: &clamber_colossus::Creature, weak_point: usize) -> DVec3 {
     let point = &kind.weak_points()[weak_point];
     let palette = kind.skeleton().palette(&kind.skeleton().rest_pose());
     let palette = palette.unwrap_or_default();
+    let at = point.position.as_dvec3();
     let frame = palette.model_from_joint(point.joint);
-    frame.map_or(DVec3::ZERO, |frame| {
-        frame.transform_point3(point.position.as_dvec3())
-    })
+    frame.map_or(DVec3::ZERO, |frame| frame.transform_point3(at))
 }
 
 /// For each weak point: the plates that cover it, and itself.
@@ -319,17 +289,15 @@ fn targets(life: &clamber_colossus::Creature, graph: &ClimbGraph) -> Vec<Target>
         let plates = 0..kind.plates().len();
         let mut add = |plate: Option<usize>, patches: &[usize]| {
             targets.push(Target {
-                aim: Aim { weak_point, plate },
+                weak_point,
+                plate,
                 goal: graph.goal(patches),
             });
         };
         let over = graph.patches_near(place, COVER * size);
         for plate in plates.clone() {
-            let on: Vec<usize> = over
-                .iter()
-                .copied()
-                .filter(|patch| is_of(*patch, plate))
-                .collect();
+            let on = over.iter().copied().filter(|patch| is_of(*patch, plate));
+            let on: Vec<usize> = on.collect();
             if !on.is_empty() {
                 add(Some(plate), &on);
             }

@@ -5,11 +5,11 @@ use std::fmt;
 
 use clamber_climber::{Climber, ClimberEvent, ClimberInput, ClimberMode};
 use clamber_surface::mesh::TriangleId;
-use clamber_world::{MaterialPoint, Obstacle};
+use clamber_world::{Attachment, MaterialPoint, Obstacle};
 use glam::DVec3;
 use serde::Serialize;
 
-use super::footing::{Off, is_inside, reach, reference_position};
+use super::footing::{is_inside, off_its_point, reach, reference_position};
 use super::{Battle, BattleOptions, CREATURE, Story, TERRAIN, TICK};
 use crate::json::number;
 use crate::valley;
@@ -20,10 +20,12 @@ const INSIDE_EVERY: u64 = 10;
 
 /// Name of the check of a contact's distance from its material point.
 pub const DRIFT: &str = "anchor drift, m";
-const PUSHED_OFF: &str = "pushed off its point, m";
+/// Name of the check of a body that other skin pushes off its material point.
+pub const PUSHED_OFF: &str = "pushed off its point, m";
 /// Name of the check of a gap between a body and its material point.
 pub const STANDS_OFF: &str = "stands off its point, m";
-const PUSH_OUT: &str = "push-out while standing, m";
+/// Name of the check of the distance by which a body is pushed out of skin.
+pub const PUSH_OUT: &str = "push-out while standing, m";
 /// Name of the check of a climber inside the creature or below the ground.
 pub const INSIDE: &str = "ticks inside or below";
 const OUT_OF_REACH: &str = "ticks out of its reach";
@@ -46,6 +48,17 @@ const MAX_PUSHED_OFF: f64 = 0.04;
 /// Largest gap between a climber's body and its material point with no skin in between, metres: the contact margin,
 /// within which the body counts as touching.
 pub const MAX_STANDS_OFF: f64 = 0.01;
+
+/// The largest number that a check allows.
+fn bound(check: &str) -> f64 {
+    match check {
+        DRIFT => MAX_DRIFT,
+        PUSHED_OFF => MAX_PUSHED_OFF,
+        STANDS_OFF => MAX_STANDS_OFF,
+        PUSH_OUT => MAX_PUSH_OUT,
+        _ => 0.0,
+    }
+}
 
 /// Largest share of a ride's ticks that the climber may spend off the creature: one in ten.
 const MAX_OFF: f64 = 0.1;
@@ -107,35 +120,18 @@ pub struct Watch {
     is_down: bool,
     /// [`Counts::drops`](super::Counts::drops) a tick ago.
     drops: Option<u32>,
-    /// How often the climber came to the ground or out of the valley. A start on the ground counts as well.
-    pub falls: u32,
-    /// Ticks at which the climber's centre was found inside the creature or below the ground.
-    pub inside: u32,
-    /// How often a rock was found inside the creature without being caught, or below the ground.
-    pub rocks_inside: u32,
-    /// Ticks at which a climber that climbs or holds on was farther from its hold than it can reach.
-    out_of_reach: u32,
-    /// Largest distance of the contact of a climber that stands without input, climbs or holds on from its material
-    /// point, metres.
-    pub drift: f64,
-    /// Number of ticks with such a distance.
+    /// Number of ticks with a drift: see [`Watch::look`].
     pub drift_ticks: usize,
-    /// Largest distance by which other skin pushed the body off its material point while it stood without input,
-    /// metres.
-    pub pushed_off: f64,
-    /// Largest gap between the body and its material point with no skin in between, while it stood without input,
-    /// metres.
-    pub stands_off: f64,
-    /// Longest push-out of a climber that stood without input, metres.
-    pub push_out: f64,
     /// Number of ticks that ended with the climber on the creature.
-    pub riding: usize,
+    riding: usize,
     /// Number of ticks that ended in each mode of [`ClimberMode::ALL`].
     pub modes: [usize; ClimberMode::ALL.len()],
-    /// Sum over all ticks: share of the creature's vertices that were skinned for the climber.
-    skinned: f64,
-    faults: BTreeMap<&'static str, String>,
+    /// For each check, the number found and a description of the first fault.
+    found: BTreeMap<&'static str, (f64, Option<String>)>,
 }
+
+/// A battle, and the place of what is checked.
+type At<'a> = (&'a Battle<'a>, DVec3);
 
 impl Watch {
     /// Checks a battle after a tick. Call it after every tick.
@@ -143,16 +139,16 @@ impl Watch {
         let (climber, drops) = (battle.climber(), battle.counts.drops);
         let idle = battle.input == ClimberInput::default() && !self.slides;
         self.look(battle, climber, idle);
+        let state = climber.state();
         let before = self.drops.replace(drops);
         if before.is_some_and(|before| before != drops) {
-            self.fell(battle, climber.state().position);
+            self.fell((battle, state.position));
             (self.is_down, self.left) = (false, None);
         }
         for (rock, place, what) in &battle.rocks.faults {
-            self.rocks_inside += 1;
-            self.note(ROCKS_INSIDE, battle, &format!("rock {rock} {what}"), *place);
+            let what = format!("rock {rock} {what}");
+            self.count(ROCKS_INSIDE, (battle, *place), &what);
         }
-        let state = climber.state();
         let own = state.velocity - state.base_velocity;
         self.slides = own.length() > climber.config().ground.walk_speed;
         self.riding += usize::from(self.was_riding);
@@ -160,8 +156,6 @@ impl Watch {
         if let Some(mode) = mode {
             self.modes[mode] += 1;
         }
-        let skinned = &battle.skinned;
-        self.skinned += skinned.vertices_skinned as f64 / skinned.vertices.max(1) as f64;
     }
 
     /// Number of ticks that were checked.
@@ -174,14 +168,14 @@ impl Watch {
         self.riding as f64 / self.ticks().max(1) as f64
     }
 
-    /// Mean share of the creature's vertices that were skinned for the climber in a tick.
-    pub fn skinned_share(&self) -> f64 {
-        self.skinned / self.ticks().max(1) as f64
+    /// The number that a check found so far: the largest distance in metres, or how often a fault was found.
+    pub fn found(&self, check: &str) -> f64 {
+        self.found.get(check).map_or(0.0, |(number, _)| *number)
     }
 
     /// The first fault of a check, as text; `None` without a fault.
     pub fn first_fault(&self, check: &str) -> Option<&str> {
-        self.faults.get(check).map(String::as_str)
+        self.found.get(check)?.1.as_deref()
     }
 
     /// The checks of a battle so far. `options` are the options that the battle was made with.
@@ -195,32 +189,23 @@ impl Watch {
                 .filter(|_| found > at_most)
                 .map(str::to_owned),
         };
+        let found = |name| check(name, self.found(name), bound(name));
         let rides = options.story() == Story::Ride;
-        let mut checks = vec![check(DRIFT, self.drift, MAX_DRIFT)];
+        let mut checks = vec![found(DRIFT)];
         if rides {
-            checks.extend([
-                check(PUSHED_OFF, self.pushed_off, MAX_PUSHED_OFF),
-                check(STANDS_OFF, self.stands_off, MAX_STANDS_OFF),
-                check(PUSH_OUT, self.push_out, MAX_PUSH_OUT),
-            ]);
+            checks.extend([PUSHED_OFF, STANDS_OFF, PUSH_OUT].map(found));
         }
-        checks.extend([
-            check(INSIDE, f64::from(self.inside), 0.0),
-            check(ROCKS_INSIDE, f64::from(self.rocks_inside), 0.0),
-            check(OUT_OF_REACH, f64::from(self.out_of_reach), 0.0),
-        ]);
+        checks.extend([INSIDE, ROCKS_INSIDE, OUT_OF_REACH].map(found));
         if rides {
             let most = MAX_OFF.max(SCRIPT_OFF / options.seconds());
             checks.push(check(NOT_RIDING, 1.0 - self.riding_share(), most));
-            checks.push(check(FALLS, f64::from(self.falls), 0.0));
+            checks.push(found(FALLS));
         } else if options.is_default_fight() {
             // With other seeds, brains and creatures the climber may lose the fight, or never be knocked over.
             let counts = &battle.counts;
             let lives = f64::from(u8::from(counts.killed == 0));
-            let points = battle
-                .life()
-                .map_or(0, |life| life.kind().weak_points().len());
-            let whole = points.saturating_sub(counts.weak_points as usize);
+            let points = battle.life().map(|life| life.kind().weak_points().len());
+            let whole = points.map_or(0, |all| all.saturating_sub(counts.weak_points as usize));
             let never = self.modes.iter().filter(|ticks| **ticks == 0).count();
             checks.extend([
                 check("creatures alive at the end", lives, 0.0),
@@ -238,161 +223,139 @@ impl Watch {
     /// where creases close: the distance of its contact from its own material point.
     pub fn look(&mut self, battle: &Battle<'_>, climber: &Climber, idle: bool) -> Option<f64> {
         let state = climber.state();
-        self.look_inside(battle, state.position);
-        self.look_at_leaving(battle, climber);
+        let at = (battle, state.position);
+        self.look_inside(at);
+        self.look_at_leaving(at, climber);
+        let support = state.support.map(|support| support.attachment);
+        let support = support.filter(|support| support.obstacle == CREATURE);
         let drift = if state.mode.is_holding() || battle.arena().is_some() {
             self.recorded = None;
-            self.look_at_hold(battle, climber)
+            self.look_at_hold(at, climber, &support?)
+        } else if let Some(support) = support.filter(|_| idle) {
+            self.look_at_footing(at, climber, &support)?
         } else {
-            self.look_at_footing(battle, climber, idle)
+            self.recorded = None;
+            return None;
         };
-        if let Some(drift) = drift {
-            self.drift = self.drift.max(drift);
-            self.drift_ticks += 1;
-            if state.mode == ClimberMode::Standing {
-                self.push_out = self.push_out.max(battle.report().pushed_out.length());
-            }
+        self.drift_ticks += 1;
+        if state.mode == ClimberMode::Standing {
+            let pushed = battle.report().pushed_out.length();
+            let what = format!("pushed out by {pushed:.3} m");
+            self.measure(PUSH_OUT, pushed, at, &what);
         }
+        Some(drift)
+    }
+
+    /// Checks a climber that climbs or holds on. Returns the drift.
+    fn look_at_hold(&mut self, at: At<'_>, climber: &Climber, hold: &Attachment) -> f64 {
+        let place = reference_position(at.0, &hold.material).unwrap_or(DVec3::INFINITY);
+        if at.1.distance(place) > reach(climber) {
+            self.count(OUT_OF_REACH, at, "out of reach");
+        }
+        let drift = hold.point.distance(place);
+        let what = format!("hold {drift:.1e} m from its material point");
+        self.measure(DRIFT, drift, at, &what);
         drift
     }
 
-    /// Checks a climber that climbs or holds on.
-    fn look_at_hold(&mut self, battle: &Battle<'_>, climber: &Climber) -> Option<f64> {
-        let state = climber.state();
-        let support = state
-            .support
-            .filter(|s| s.attachment.obstacle == CREATURE)?;
-        let (surface, palette) = (battle.surface(), battle.palette());
-        let place = reference_position(surface, palette, &support.attachment.material);
-        let place = place.unwrap_or(DVec3::INFINITY);
-        if state.position.distance(place) > reach(climber) {
-            self.out_of_reach += 1;
-            self.note(OUT_OF_REACH, battle, "out of reach", state.position);
-        }
-        let drift = support.attachment.point.distance(place);
-        if drift > MAX_DRIFT {
-            let what = format!("hold {drift:.1e} m from its material point");
-            self.note(DRIFT, battle, &what, state.position);
-        }
-        Some(drift)
-    }
-
-    /// Checks a rider that stands, or is in the air.
+    /// Checks a rider that stands without input. Returns the drift, unless its material point is a new one.
     fn look_at_footing(
         &mut self,
-        battle: &Battle<'_>,
+        at: At<'_>,
         climber: &Climber,
-        idle: bool,
+        support: &Attachment,
     ) -> Option<f64> {
-        let (state, report) = (climber.state(), battle.report());
-        let support = state
-            .support
-            .filter(|s| s.attachment.obstacle == CREATURE && idle);
-        let Some(support) = support else {
-            self.recorded = None;
-            return None;
-        };
         // It may slip and land on another point within one tick.
         let landed = |event: &ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
-        let kept = self.recorded.filter(|_| !report.events.iter().any(landed));
-        let Some(recorded) = kept else {
-            self.recorded = Some(support.attachment.material);
+        let has_landed = at.0.report().events.iter().any(landed);
+        let Some(recorded) = self.recorded.filter(|_| !has_landed) else {
+            self.recorded = Some(support.material);
             return None;
         };
-        let center = state.position;
-        let push_out = report.pushed_out.length();
-        if push_out > MAX_PUSH_OUT {
-            let what = format!("pushed out by {push_out:.3} m");
-            self.note(PUSH_OUT, battle, &what, center);
-        }
-        let (surface, palette) = (battle.surface(), battle.palette());
         let radius = climber.config().body.radius;
-        let off = Off::measure(surface, palette, &recorded, center, radius);
-        let contact = support.attachment.point.distance(off.point);
-        let drift = contact.max(off.sunk);
+        let (point, off, is_pushed) = off_its_point(at, &recorded, radius);
+        let (contact, sunk) = (support.point.distance(point), (-off).max(0.0));
+        let drift = contact.max(sunk);
+        let what = format!(
+            "contact {contact:.1e} m from its material point, body {sunk:.1e} m deep in it"
+        );
+        self.measure(DRIFT, drift, at, &what);
         if drift > MAX_DRIFT {
-            let sunk = off.sunk;
-            let what = format!(
-                "contact {contact:.1e} m from its material point, body {sunk:.1e} m deep in it"
-            );
-            self.note(DRIFT, battle, &what, center);
             // A lost point counts once. Drift below the limit accumulates against the recorded point.
-            self.recorded = Some(support.attachment.material);
-            return Some(drift);
-        }
-        self.pushed_off = self.pushed_off.max(off.pushed);
-        if off.pushed > MAX_PUSHED_OFF {
-            let what = format!("pushed off by {:.3} m", off.pushed);
-            self.note(PUSHED_OFF, battle, &what, center);
-        }
-        self.stands_off = self.stands_off.max(off.gap);
-        if off.gap > MAX_STANDS_OFF {
-            let what = format!("stands off by {:.3} m", off.gap);
-            self.note(STANDS_OFF, battle, &what, center);
+            self.recorded = Some(support.material);
+        } else if is_pushed {
+            self.measure(PUSHED_OFF, off, at, &format!("pushed off by {off:.3} m"));
+        } else {
+            self.measure(STANDS_OFF, off, at, &format!("stands off by {off:.3} m"));
         }
         Some(drift)
     }
 
-    fn look_inside(&mut self, battle: &Battle<'_>, center: DVec3) {
+    fn look_inside(&mut self, at: At<'_>) {
+        let (battle, DVec3 { x, y, z }) = at;
         let look = battle.tick().is_multiple_of(INSIDE_EVERY);
-        let below =
-            valley::contains(center.x, center.z) && center.y < valley::height(center.x, center.z);
-        if below || look && is_inside(battle.surface(), center) {
-            self.inside += 1;
+        let below = valley::contains(x, z) && y < valley::height(x, z);
+        if below || look && is_inside(battle.surface(), at.1) {
             let what = if below { "below the ground" } else { "inside" };
-            self.note(INSIDE, battle, what, center);
+            self.count(INSIDE, at, what);
         }
     }
 
     /// Notes how the climber left the creature, and the fall when it comes to the ground.
-    fn look_at_leaving(&mut self, battle: &Battle<'_>, climber: &Climber) {
-        let state = climber.state();
-        let stands_on = state.support.map(|support| support.attachment.obstacle);
+    fn look_at_leaving(&mut self, at: At<'_>, climber: &Climber) {
+        let support = climber.state().support;
+        let stands_on = support.map(|support| support.attachment.obstacle);
         let rides = stands_on == Some(CREATURE);
         if self.was_riding && !rides {
-            let what = format!("left the creature, {:?}", battle.report().events);
-            self.note(NOT_RIDING, battle, &what, state.position);
-            self.left = Some(describe(battle, &what, state.position));
+            let what = format!("left the creature, {:?}", at.0.report().events);
+            self.count(NOT_RIDING, at, &what);
+            self.left = Some(describe(at, &what));
         }
         if stands_on == Some(TERRAIN) {
-            self.fell(battle, state.position);
+            self.fell(at);
         }
         self.is_down &= !rides;
         self.was_riding = rides;
     }
 
     /// The climber is on the ground or out of the valley: counts a fall, if it is a new one.
-    fn fell(&mut self, battle: &Battle<'_>, place: DVec3) {
+    fn fell(&mut self, at: At<'_>) {
         if std::mem::replace(&mut self.is_down, true) {
             return;
         }
-        self.falls += 1;
-        if let Some(left) = self.left.take() {
-            self.faults.entry(FALLS).or_insert(left);
-        } else {
-            self.note(FALLS, battle, "never came to stand on the creature", place);
-        }
+        let left = self.left.take();
+        let (falls, cause) = self.found.entry(FALLS).or_default();
+        *falls += 1.0;
+        let never = || describe(at, "never came to stand on the creature");
+        cause.get_or_insert_with(|| left.unwrap_or_else(never));
     }
 
-    /// Keeps the description of a fault if it is the check's first one.
-    fn note(&mut self, check: &'static str, battle: &Battle<'_>, what: &str, place: DVec3) {
-        let first = self.faults.entry(check);
-        first.or_insert_with(|| describe(battle, what, place));
+    /// Counts a fault of a check.
+    fn count(&mut self, check: &'static str, at: At<'_>, what: &str) {
+        self.measure(check, self.found(check) + 1.0, at, what);
+    }
+
+    /// Keeps the largest number of a check, and describes the first one beyond its bound.
+    fn measure(&mut self, check: &'static str, number: f64, at: At<'_>, what: &str) {
+        let (largest, cause) = self.found.entry(check).or_default();
+        *largest = largest.max(number);
+        if number > bound(check) {
+            cause.get_or_insert_with(|| describe(at, what));
+        }
     }
 }
 
 /// Describes a fault `what` at a place: tick, clip, position, and the nearest skin with its speed.
-fn describe(battle: &Battle<'_>, what: &str, place: DVec3) -> String {
+fn describe((battle, place): At<'_>, what: &str) -> String {
     let (tick, surface) = (battle.tick(), battle.surface());
     let near = surface.closest_point(place, NEAR * battle.height);
     let skin = near.map_or("no skin near".into(), |near| {
         let motion = surface.motion(&near.material, TICK);
         let speed = motion.map_or(0.0, |motion| motion.velocity.length());
-        let joint = surface
-            .mesh()
-            .joint_of(TriangleId(near.material.key as u32));
-        let joint =
-            joint.and_then(|joint| battle.creature.rig.skeleton.joints().get(joint.index()));
+        let triangle = TriangleId(near.material.key as u32);
+        let joints = battle.creature.rig.skeleton.joints();
+        let joint = surface.mesh().joint_of(triangle);
+        let joint = joint.and_then(|joint| joints.get(joint.index()));
         let (distance, joint) = (near.distance, joint.map_or("no joint", |joint| &joint.name));
         format!("{distance:.3} m from skin of {joint} that moves at {speed:.1} m/s")
     });

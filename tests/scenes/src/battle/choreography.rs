@@ -3,7 +3,7 @@
 
 use clamber_animation::SeamProbe;
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
-use clamber_surface::rig::{Clip, Palette, Playback, Pose};
+use clamber_surface::rig::{Clip, Palette, Playback, Pose, RigError};
 use glam::DVec3;
 
 use super::SceneError;
@@ -35,7 +35,6 @@ struct Act {
 pub(super) struct Choreography<'a> {
     creature: &'a Creature,
     acts: Vec<Act>,
-    rest: Pose,
     /// Metres per model unit.
     scale: f64,
     /// Lowest y of the skin in the first pose, in model space.
@@ -46,10 +45,6 @@ pub(super) struct Choreography<'a> {
     pub(super) time: f64,
     /// Distance that the creature has walked, metres.
     pub(super) walked: f64,
-    /// The pose of the current tick.
-    pose: Pose,
-    /// Memory for the pose that is faded in.
-    fading: Pose,
     /// The palette of the last [`Choreography::pose`].
     pub(super) palette: Palette,
 }
@@ -59,35 +54,27 @@ impl<'a> Choreography<'a> {
     pub(super) fn new(creature: &'a Creature, height: f64) -> Result<Self, SceneError> {
         let mut acts = acts(creature);
         let rest = creature.rig.skeleton.rest_pose();
-        let mut first = rest.clone();
-        if let Some(clip) = acts[0].clip {
-            creature.rig.clips[clip].sample_into(0.0, Playback::Loop, &mut first)?;
-        }
-        let (low, high) = creature.bounds(&first)?;
+        let first = acts[0].clip.map(|clip| &creature.rig.clips[clip]);
+        let first = first.map(|clip| clip.sample(&rest, 0.0, Playback::Loop));
+        let (low, high) = creature.bounds(first.transpose()?.as_ref().unwrap_or(&rest))?;
         let tall = f64::from(high.y) - f64::from(low.y);
         let scale = height / tall;
         if !(scale.is_normal() && scale > 0.0) {
             return Err(no_height(creature, height));
         }
         let probe = SeamProbe::new(&creature.rig.skeleton, &creature.rig.collider, tall);
-        let repeats = |act: &&mut Act| act.repeat != Repeat::Hold;
-        for act in acts.iter_mut().filter(repeats) {
+        for act in acts.iter_mut().filter(|act| act.repeat != Repeat::Hold) {
             if let Some(clip) = act.clip {
                 act.repeat = Repeat::of(probe.measure(&creature.rig.clips[clip])?);
             }
         }
-        let speed = creature
-            .walk_speed
-            .map_or(SPEED_PER_HEIGHT * height, |speed| speed * scale);
+        let speed = creature.walk_speed.map(|speed| speed * scale);
         Ok(Self {
             creature,
             acts,
-            pose: first.clone(),
-            fading: first,
-            rest,
             scale,
             lowest: f64::from(low.y),
-            speed,
+            speed: speed.unwrap_or(SPEED_PER_HEIGHT * height),
             time: 0.0,
             walked: 0.0,
             palette: Palette::default(),
@@ -106,20 +93,22 @@ impl<'a> Choreography<'a> {
     /// Poses the creature for the current tick: its palette, and its place in the world.
     pub(super) fn pose(&mut self) -> Result<(&Palette, Similarity), SceneError> {
         let (now, before, share) = self.moment();
-        self.pose.clone_from(&self.rest);
-        if let Some((clip, time)) = self.clip(before) {
-            clip.sample_into(time, Playback::Clamp, &mut self.pose)?;
-        }
+        let mut pose = self.sample(before)?;
         if share > 0.0 && now != before {
-            self.fading.clone_from(&self.rest);
-            if let Some((clip, time)) = self.clip(now) {
-                clip.sample_into(time, Playback::Clamp, &mut self.fading)?;
-            }
-            self.pose.blend_in(&self.fading, share)?;
+            pose.blend_in(&self.sample(now)?, share)?;
         }
         let skeleton = &self.creature.rig.skeleton;
-        skeleton.palette_into(&self.pose, &mut self.palette)?;
+        skeleton.palette_into(&pose, &mut self.palette)?;
         Ok((&self.palette, self.world_from_model()))
+    }
+
+    /// The pose of an act now.
+    fn sample(&self, act: usize) -> Result<Pose, RigError> {
+        let mut pose = self.creature.rig.skeleton.rest_pose();
+        if let Some((clip, time)) = self.clip(act) {
+            clip.sample_into(time, Playback::Clamp, &mut pose)?;
+        }
+        Ok(pose)
     }
 
     /// The current clip and the time in it, as text for messages.
@@ -194,18 +183,17 @@ pub(super) fn no_height(creature: &Creature, height: f64) -> SceneError {
 /// then every clip in turn, except deaths.
 fn acts(creature: &Creature) -> Vec<Act> {
     let act = |clip, seconds, walks| Act {
-        clip: Some(clip),
+        clip,
         seconds,
         walks,
         repeat: Repeat::Loop,
     };
-    let (idle, walk) = (
-        creature.clip_index(&["idle"]),
-        creature.clip_index(&["walk", "run"]),
-    );
-    if let (Some(idle), Some(walk)) = (idle, walk) {
+    let idle = creature.clip_index(&["idle"]);
+    let walk = creature.clip_index(&["walk", "run"]);
+    if idle.is_some() && walk.is_some() {
         let mut acts = vec![act(idle, 6.0, false), act(walk, 16.0, true)];
-        if let Some(shake) = creature.clip_index(&["shake", "attack"]) {
+        let shake = creature.clip_index(&["shake", "attack"]);
+        if shake.is_some() {
             acts.extend([act(shake, 4.0, false), act(walk, 12.0, true)]);
         }
         return acts;
@@ -214,22 +202,15 @@ fn acts(creature: &Creature) -> Vec<Act> {
         let name = clip.name.to_lowercase();
         !name.contains("death") && !name.contains("die")
     });
-    let mut acts: Vec<Act> = lively.map(|(clip, _)| act(clip, 8.0, false)).collect();
+    let clips: Vec<_> = lively.map(|(clip, _)| Some(clip)).collect();
+    let Some(first) = clips.first() else {
+        return vec![act(None, 8.0, false)];
+    };
     // Still until a rider has landed: some clips begin with an attack, at 70 m/s.
-    if let Some(first) = acts.first().and_then(|first| first.clip) {
-        let still = Act {
-            repeat: Repeat::Hold,
-            ..act(first, LANDING, false)
-        };
-        acts.insert(0, still);
-    }
-    if acts.is_empty() {
-        acts.push(Act {
-            clip: None,
-            seconds: 8.0,
-            walks: false,
-            repeat: Repeat::Loop,
-        });
-    }
-    acts
+    let still = Act {
+        repeat: Repeat::Hold,
+        ..act(*first, LANDING, false)
+    };
+    let others = clips.iter().map(|clip| act(*clip, 8.0, false));
+    std::iter::once(still).chain(others).collect()
 }

@@ -47,11 +47,8 @@ impl Eyes {
     /// The hardest shake in the near future where the climber is, metres a second squared; 0 until it is seen coming.
     pub(super) fn shake_ahead(&mut self, life: &Creature, climber: &Climber) -> f64 {
         let state = life.state().current();
-        self.seen = if self.state.replace(state) == Some(state) {
-            self.seen.saturating_add(1)
-        } else {
-            0
-        };
+        let is_same = self.state.replace(state) == Some(state);
+        self.seen = if is_same { self.seen + 1 } else { 0 };
         if f64::from(self.seen) * TICK < REACTION || climber.state().support.is_none() {
             self.shake = 0.0;
         } else if self.seen.is_multiple_of(EVERY) {
@@ -59,9 +56,8 @@ impl Eyes {
             let mut future = |seconds: f64, palette: &mut Palette| {
                 life.foresee(seconds, foresight, palette).ok()
             };
-            let ahead = self
-                .skin
-                .shake_ahead(climber, CREATURE, &mut future, STEP, AHEAD);
+            let skin = &mut self.skin;
+            let ahead = skin.shake_ahead(climber, CREATURE, &mut future, STEP, AHEAD);
             self.shake = ahead.unwrap_or(0.0);
         }
         self.shake

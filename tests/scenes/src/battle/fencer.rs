@@ -6,8 +6,8 @@ use clamber_fight::aim::lead;
 use clamber_fight::{Arena, FighterId, WeaponAction};
 use glam::DVec3;
 
-use super::TICK;
-use super::bot::{Aim, Sight, giant};
+use super::bot::{Target, giant};
+use super::{GRIP, TICK};
 
 /// Arrows that the bot shoots before it comes near.
 const ARROWS: u32 = 2;
@@ -43,19 +43,15 @@ pub(super) struct Fencer {
 }
 
 impl Fencer {
-    /// The input of a stab, which begins if the blade would hit the aim, and is continued; `None` without a stab.
-    pub(super) fn stab(&mut self, arena: &Arena, aim: Aim) -> Option<ClimberInput> {
+    /// The input of a stab, which begins if the blade would hit the target, and is continued; `None` without a stab.
+    pub(super) fn stab(&mut self, arena: &Arena, target: &Target) -> Option<ClimberInput> {
         let fighter = arena.fighter(HERO)?;
         let state = fighter.climber().state();
-        let holds = |actions| ClimberInput {
-            grip: true,
-            actions,
-            ..ClimberInput::default()
-        };
         let was_pressed = std::mem::replace(&mut self.pressed, false);
         let mut press = |is_down: bool| {
             self.pressed = is_down;
-            Some(holds(if is_down { STAB } else { 0 }))
+            let actions = if is_down { STAB } else { 0 };
+            Some(ClimberInput { actions, ..GRIP })
         };
         match fighter.act() {
             WeaponAction::Raise { .. } => press(true),
@@ -67,10 +63,8 @@ impl Fencer {
             WeaponAction::Ready => {
                 // No terrain is between them while it stands on the creature.
                 let aimed = arena.stab_aim(HERO, &[])?;
-                let is_right = match aim.plate {
-                    Some(plate) => aimed.plate == Some(plate),
-                    None => aimed.plate.is_none() && aimed.weak_point == Some(aim.weak_point),
-                };
+                let is_right = aimed.plate == target.plate
+                    && (target.plate.is_some() || aimed.weak_point == Some(target.weak_point));
                 let is_firm = matches!(state.mode, ClimberMode::Standing | ClimberMode::Holding);
                 let is_able = state.shake.length() < CALM && state.stamina > STRONG;
                 let can = is_right && is_firm && is_able;
@@ -83,14 +77,14 @@ impl Fencer {
     }
 
     /// The vector from the point that the blade would hit to the weak point; `None` if there is no skin before the blade.
-    pub(super) fn miss(&self, arena: &Arena, aim: Aim) -> Option<DVec3> {
-        let place = giant(arena).weak_point(aim.weak_point)?;
+    pub(super) fn miss(&self, arena: &Arena, target: &Target) -> Option<DVec3> {
+        let place = giant(arena).weak_point(target.weak_point)?;
         let aimed = arena.stab_aim(HERO, &[])?;
         Some(place - aimed.place)
     }
 
     /// The input of a shot from the ground; `None` without a shot.
-    pub(super) fn shoot(&mut self, arena: &Arena, sight: Sight) -> Option<ClimberInput> {
+    pub(super) fn shoot(&mut self, arena: &Arena, is_attacked: bool) -> Option<ClimberInput> {
         let fighter = arena.fighter(HERO)?;
         let climber = fighter.climber();
         let from = fighter.nock()?;
@@ -101,7 +95,7 @@ impl Fencer {
         self.target = Some(place);
         let is_far = (RANGE[0]..RANGE[1]).contains(&place.distance(from));
         let stands = climber.state().mode == ClimberMode::Standing;
-        if self.shot >= ARROWS || sight.attacks || !stands || !is_far {
+        if self.shot >= ARROWS || is_attacked || !stands || !is_far {
             self.drawn = 0;
             return None;
         }

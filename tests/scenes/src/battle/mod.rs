@@ -20,12 +20,14 @@ mod outcrop;
 mod record;
 mod repeat;
 mod ride;
-mod rider;
 mod rockfall;
 mod scene;
 
+use clamber_climber::ClimberInput;
+
 pub use checks::{
-    Check, DRIFT, FALLS, INSIDE, MAX_DRIFT, MAX_STANDS_OFF, ROCKS_INSIDE, STANDS_OFF, Watch,
+    Check, DRIFT, FALLS, INSIDE, MAX_DRIFT, MAX_STANDS_OFF, PUSH_OUT, PUSHED_OFF, ROCKS_INSIDE,
+    STANDS_OFF, Watch,
 };
 pub use counts::Counts;
 pub use options::{BattleOptions, Story, positive};
@@ -33,8 +35,14 @@ pub use outcrop::mesh as outcrop;
 #[cfg(feature = "record")]
 pub use record::{BattleRecorder, Replay, replay};
 pub use repeat::Repeat;
-pub use rider::Intent;
+pub use ride::Intent;
 pub use rockfall::{Rockfall, Triangles};
-pub use scene::{Battle, BattleSnapshot, CREATURE, CreatureState, TERRAIN, TICK};
+pub use scene::{Battle, BattleSnapshot, CREATURE, TERRAIN, TICK};
 
 pub use crate::SceneError;
+
+/// The input of a climber that holds on where it is.
+const GRIP: ClimberInput = ClimberInput {
+    grip: true,
+    ..ClimberInput::IDLE
+};

@@ -117,11 +117,10 @@ impl BattleOptions {
 
     /// Options from the settings that [`BattleOptions::to_settings`] gave.
     pub fn from_settings(settings: &BTreeMap<String, String>) -> Result<Self, SceneError> {
-        let arguments = settings
-            .iter()
-            .map(|(name, value)| format!("--{name}={value}"));
+        let argument = |(name, value): (&String, &String)| format!("--{name}={value}");
         let program = std::iter::once("battle".to_owned());
-        Ok(Self::try_parse_from(program.chain(arguments))?)
+        let words = program.chain(settings.iter().map(argument));
+        Ok(Self::try_parse_from(words)?)
     }
 
     /// The creature's brain; `None` in a ride.
@@ -141,29 +140,28 @@ impl BattleOptions {
                 return Err(reason.into());
             }
         };
+        let name = path.display();
         let text = std::fs::read_to_string(&path)
-            .map_err(|error| format!("cannot read the brain {}: {error}", path.display()))?;
-        let brain = Brain::from_json(&text, TICK)
-            .map_err(|error| format!("{}: {error}", path.display()))?;
+            .map_err(|error| format!("cannot read the brain {name}: {error}"))?;
+        let brain = Brain::from_json(&text, TICK).map_err(|error| format!("{name}: {error}"))?;
         Ok(Some(brain))
     }
 
     /// Loads the creature.
     pub fn load_creature(&self) -> Result<Creature, SceneError> {
-        Ok(match &self.creature {
-            Some(path) => Creature::load(path)?,
-            None => giant::giant()?,
-        })
+        match &self.creature {
+            Some(path) => Creature::load(path),
+            None => giant::giant(),
+        }
     }
 
     /// Height that the creature is scaled to, metres: the option, or the height in the brain's file, or the default.
     pub fn height(&self) -> f64 {
-        let default = match &self.creature {
+        let height = self.height.or_else(|| self.height_of_brain());
+        height.unwrap_or(match &self.creature {
             Some(_) => FILE_HEIGHT,
             None => GIANT_HEIGHT,
-        };
-        let height = self.height.or_else(|| self.height_of_brain());
-        height.unwrap_or(default)
+        })
     }
 
     /// `None` without a brain, and with one that cannot be read, which [`Battle::new`](super::Battle::new) reports.

@@ -5,8 +5,8 @@ use clamber_climber::{Climber, ClimberInput, ClimberMode};
 use clamber_world::rapier3d::prelude::*;
 use glam::DVec3;
 
-use super::SceneError;
 use super::rockfall::Triangles;
+use super::{GRIP, SceneError};
 use crate::valley;
 
 /// X of its wall, metres: it is climbed along +X.
@@ -44,27 +44,15 @@ pub fn mesh() -> Triangles {
         (WALL + TOP, top),
         (END, behind),
     ];
-    let sides = [MIDDLE - HALF_WIDTH, MIDDLE + HALF_WIDTH];
-    let corners = sides
-        .iter()
-        .flat_map(|z| profile.map(|(x, y)| DVec3::new(x, y, *z).as_vec3()));
-    let triangles = vec![
-        // Wall, top and slope.
-        [0, 4, 5],
-        [0, 5, 1],
-        [1, 5, 6],
-        [1, 6, 2],
-        [2, 6, 7],
-        [2, 7, 3],
-        // Below, and both sides.
-        [3, 7, 4],
-        [3, 4, 0],
-        [0, 1, 2],
-        [0, 2, 3],
-        [4, 6, 5],
-        [4, 7, 6],
-    ];
-    (corners.collect(), triangles)
+    let sides = [MIDDLE - HALF_WIDTH, MIDDLE + HALF_WIDTH].into_iter();
+    let corners = sides.flat_map(|z| profile.map(|(x, y)| DVec3::new(x, y, z).as_vec3()));
+    // Wall, top, slope and below, and then both ends.
+    let around = (0..4).flat_map(|a: u32| {
+        let b = (a + 1) % 4;
+        [[a, a + 4, b + 4], [a, b + 4, b]]
+    });
+    let ends = [[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]];
+    (corners.collect(), around.chain(ends).collect())
 }
 
 /// Adds the outcrop to the valley.
@@ -110,9 +98,8 @@ impl Crossing {
             return None;
         }
         if self.crossed {
-            let aside = DVec3::Z * state.position.z.signum();
             return Some(ClimberInput {
-                walk: aside,
+                walk: DVec3::Z * state.position.z.signum(),
                 grip: state.mode == ClimberMode::Standing,
                 ..ClimberInput::IDLE
             });
@@ -120,26 +107,19 @@ impl Crossing {
         if state.mode == ClimberMode::Tumbling {
             return Some(ClimberInput::IDLE);
         }
-        let grip = ClimberInput {
-            grip: true,
-            ..ClimberInput::IDLE
-        };
         if state.mode == ClimberMode::LedgeHanging {
-            return Some(ClimberInput {
-                climb: climber.config().up(),
-                ..grip
-            });
+            let climb = climber.config().up();
+            return Some(ClimberInput { climb, ..GRIP });
         }
         let gap = WALL - climber.config().body.radius - state.position.x;
         let is_near = (0.0..JUMP).contains(&gap) && state.mode == ClimberMode::Standing;
-        let is_rested = self
-            .jumped
-            .is_none_or(|jumped| seconds - jumped > BETWEEN_JUMPS);
+        let rests = |jumped: f64| seconds - jumped > BETWEEN_JUMPS;
+        let is_rested = self.jumped.is_none_or(rests);
         let jump = is_near && is_rested && !attacked;
         if jump {
             self.jumped = Some(seconds);
         }
         let walk = if attacked { -DVec3::X } else { DVec3::X };
-        Some(ClimberInput { walk, jump, ..grip })
+        Some(ClimberInput { walk, jump, ..GRIP })
     }
 }

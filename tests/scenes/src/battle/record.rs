@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use clamber_record::{
-    Difference, Ending, FigureView, RecordError, RecordOptions, RecordedTick, Recorder, Recording,
+    Difference, FigureView, RecordError, RecordOptions, RecordedTick, Recorder, Recording,
     RecordingInfo, ReplayError, Replayed, SceneryView, TickView, creature_fingerprint,
     palette_fingerprint,
 };
@@ -78,6 +78,7 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
         self.recorder.tick(&TickView {
             tick: battle.tick(),
             input: &battle.input,
+            knockback: None,
             state: battle.climber().state(),
             report: battle.report(),
             surface: battle.surface(),
@@ -113,22 +114,15 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
         } else if !self.recorder.is_due()? {
             return Ok(());
         }
-        for Scenery {
-            name,
-            rock,
-            mesh,
-            color,
-        } in &self.scenery
-        {
-            if rock.is_none() && !is_first {
-                continue;
-            }
+        let moving = |one: &&Scenery| is_first || one.rock.is_some();
+        for one in self.scenery.iter().filter(moving) {
+            let place = one.rock.map(|rock| battle.placed(rock));
             self.recorder.scenery(&SceneryView {
-                name,
-                world_from_own: rock.map_or(Similarity::IDENTITY, |rock| battle.placed(rock)),
-                points: &mesh.0,
-                triangles: &mesh.1,
-                color: *color,
+                name: &one.name,
+                world_from_own: place.unwrap_or(Similarity::IDENTITY),
+                points: &one.mesh.0,
+                triangles: &one.mesh.1,
+                color: one.color,
             })?;
         }
         Ok(())
@@ -142,33 +136,31 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
 
 /// Ground, outcrop and rocks of a battle.
 fn scenery(battle: &Battle<'_>) -> Vec<Scenery> {
-    let still = |name: &str, mesh, color| Scenery {
-        name: name.to_owned(),
-        rock: None,
-        mesh,
-        color,
+    let mut all = Vec::new();
+    let mut add = |name: String, rock, mesh, color| {
+        all.push(Scenery {
+            name,
+            rock,
+            mesh,
+            color,
+        });
     };
-    let mut all = vec![still("ground", valley::mesh(CELL), [0.42, 0.47, 0.33])];
+    let ground = valley::mesh(CELL);
+    add("ground".into(), None, ground, [0.42, 0.47, 0.33]);
     if battle.arena().is_some() {
-        all.push(still("outcrop", outcrop(), [0.4, 0.38, 0.35]));
+        add("outcrop".into(), None, outcrop(), [0.4, 0.38, 0.35]);
     }
     for (number, (rock, mesh)) in (0..).zip(battle.rocks.meshes(&battle.world)) {
-        all.push(Scenery {
-            rock: Some(rock),
-            ..still(&format!("rock {number}"), mesh, [0.36, 0.34, 0.31])
-        });
+        let color = [0.36, 0.34, 0.31];
+        add(format!("rock {number}"), Some(rock), mesh, color);
     }
     all
 }
 
 /// Fingerprint of the creature, and of its brain.
 fn fingerprint(battle: &Battle<'_>) -> u64 {
-    let creature = battle.creature;
-    let body = creature_fingerprint(
-        &creature.rig.skeleton,
-        &creature.rig.clips,
-        &creature.rig.collider,
-    );
+    let rig = &battle.creature.rig;
+    let body = creature_fingerprint(&rig.skeleton, &rig.clips, &rig.collider);
     let brain = battle.life().map(|life| life.kind().brain().file());
     // The brain as it is read, whatever the layout of its file.
     let text = brain.and_then(|file| serde_json::to_string(file).ok());
@@ -190,8 +182,6 @@ pub struct Replay {
     pub with_rocks: bool,
     /// The first tick that differs; `None` if all agree.
     pub difference: Option<Box<Difference>>,
-    /// How the recording ends.
-    pub ending: Ending,
 }
 
 /// Runs a recorded battle again with the recorded inputs, and compares every tick.
@@ -266,6 +256,5 @@ fn replay_run(recording: &Recording, from: Option<u64>, last: u64) -> Result<Rep
         agreed: agreed - u64::from(difference.is_some()),
         with_rocks: from.is_none(),
         difference,
-        ending: recording.ending().clone(),
     })
 }

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use clamber_surface::Fingerprint;
 use clamber_surface::surface::SkinnedSurface;
+use clamber_world::DebrisReport;
 use clamber_world::rapier3d::prelude::*;
 use glam::{DVec3, Vec3};
 
@@ -39,11 +40,8 @@ pub struct Rockfall {
     next: usize,
     /// How often a rock was dropped, the first drop of each included.
     pub drops: u32,
-    /// [`DebrisReport::near`](clamber_world::DebrisReport::near), summed over all ticks: rocks with skin near them.
-    pub near: u64,
-    /// [`DebrisReport::put_back`](clamber_world::DebrisReport::put_back), summed over all ticks: rocks put back in front
-    /// of the skin.
-    pub put_back: u32,
+    /// What the skin did to them in the last tick.
+    pub report: DebrisReport,
     /// How often a rock was knocked out of the valley, where there is no ground.
     pub left: u32,
     /// Rocks that were found inside the creature without being caught, as under a foot, or below the ground, in the last
@@ -67,8 +65,7 @@ impl Rockfall {
             rng: fastrand::Rng::with_seed(seed),
             next: 0,
             drops: rocks.bodies.len() as u32,
-            near: 0,
-            put_back: 0,
+            report: DebrisReport::default(),
             left: 0,
             faults: Vec::new(),
             rocks,
@@ -85,10 +82,8 @@ impl Rockfall {
         above: DVec3,
     ) -> Result<f64, SceneError> {
         let start = Instant::now();
-        let report = self.rocks.step((CREATURE, surface), world, TICK)?;
+        self.report = self.rocks.step((CREATURE, surface), world, TICK)?;
         let time = start.elapsed().as_secs_f64() * 1e6;
-        self.near += u64::from(report.near);
-        self.put_back += report.put_back;
         self.faults.clear();
         if tick.is_multiple_of(LOOK_EVERY) {
             self.look_inside(surface, world);

@@ -1,15 +1,17 @@
-mod views;
-
 use std::time::Instant;
 
 use clamber_climber::{
-    ClimberConfig, ClimberEvent, ClimberInput, ClimberState, ContactQuery, StepRules,
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberState, ContactQuery, StepReport,
+    StepRules,
 };
 use clamber_fight::{Arena, ArenaEvent, ArenaState, CreatureId, FighterConfig, creature_obstacle};
+use clamber_navigation::{Bot, Goal};
 use clamber_surface::Fingerprint;
+use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceKind;
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::{Diagnostics, SkinnedSurface};
-use clamber_world::rapier3d::dynamics::RigidBodySet;
+use clamber_world::rapier3d::dynamics::{RigidBodyHandle, RigidBodySet};
 use clamber_world::rapier3d::geometry::{Collider, ColliderHandle};
 use clamber_world::rapier3d::pipeline::PhysicsWorld;
 use clamber_world::{BodyPoses, Contact, MaterialPoint, Obstacle, ObstacleId, RapierTerrain};
@@ -18,7 +20,6 @@ use serde::{Deserialize, Serialize};
 
 use super::bot::{Planner, arena, giant};
 use super::ride::{Ride, rider_above};
-use super::rider::Rider;
 use super::{BattleOptions, Counts, Intent, Rockfall, SceneError, outcrop};
 use crate::{Creature, valley};
 
@@ -33,10 +34,6 @@ pub const CREATURE: ObstacleId = creature_obstacle(CreatureId(0));
 
 /// Height above the perch from which the climber is first dropped, metres.
 const DROP: f64 = 2.0;
-
-/// Height above the skin from which the climber is dropped again, metres. Small, since a moving creature soon carries
-/// its back away from under the climber.
-const DROP_AGAIN: f64 = 0.1;
 
 /// Height above the perch from which rocks fall, as a share of the creature's height.
 const ROCKS_ABOVE: f64 = 0.5;
@@ -93,22 +90,11 @@ enum Part<'a> {
 pub struct BattleSnapshot {
     /// What happened so far.
     pub counts: Counts,
-    /// The creature's state.
-    pub creature: CreatureState,
-}
-
-/// The state of a battle's creature.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum CreatureState {
     /// In a climb: the state of the arena, which includes the climber's.
-    Fights(Box<ArenaState>),
-    /// In a ride.
-    Plays {
-        /// Time of the creature's clips, seconds: the sum of the ticks' lengths.
-        time: f64,
-        /// Distance that the creature has walked, metres.
-        walked: f64,
-    },
+    pub arena: Option<Box<ArenaState>>,
+    /// In a ride: time of the creature's clips, seconds, which is the sum of the ticks' lengths, and the distance that
+    /// the creature has walked, metres.
+    pub played: [f64; 2],
 }
 
 impl<'a> Battle<'a> {
@@ -121,12 +107,9 @@ impl<'a> Battle<'a> {
     pub fn new(creature: &'a Creature, options: &BattleOptions) -> Result<Self, SceneError> {
         let (height, seed) = (options.height(), options.seed);
         let perch = |surface: &SkinnedSurface| {
-            find_perch(surface, height, seed).ok_or_else(|| {
-                let name = &creature.name;
-                format!(
-                    "found no place to drop a climber on {name}: no ray from above meets its skin"
-                )
-            })
+            let (name, reason) = (&creature.name, "no ray from above meets its skin");
+            let none = || format!("found no place to drop a climber on {name}: {reason}");
+            find_perch(surface, height, seed).ok_or_else(none)
         };
         let mut world = valley::world();
         let mut counts = Counts::default();
@@ -140,12 +123,8 @@ impl<'a> Battle<'a> {
             };
             outcrop::insert(&mut world)?;
             let (climber, position) = climber_before_the_outcrop(seed);
-            let plates = life
-                .kind()
-                .plates()
-                .iter()
-                .map(|plate| plate.triangles.clone());
-            let plates: Vec<_> = plates.collect();
+            let plates = life.kind().plates().iter();
+            let plates: Vec<_> = plates.map(|plate| plate.triangles.clone()).collect();
             let graph = living.graph(&climber, height, life.rate(), &plates)?;
             let bot = Box::new(Planner::new(&arena, graph, creature)?);
             let fighter = FighterConfig {
@@ -224,7 +203,12 @@ impl<'a> Battle<'a> {
             Part::Fights { arena, .. } => {
                 arena.step_with(&[input], &[], &[(TERRAIN, &terrain)], &rules)?;
             }
-            Part::Rides(ride) => ride.step(&input, &terrain, &rules)?,
+            Part::Rides(ride) => {
+                let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
+                    [(TERRAIN, &terrain), (CREATURE, &ride.surface)];
+                let report = ride.climber.step_with(&input, &obstacles, &rules, TICK);
+                ride.report = report?;
+            }
         }
         let own = start.elapsed().as_secs_f64() * 1e6;
         let surface = self.part.surface();
@@ -233,9 +217,8 @@ impl<'a> Battle<'a> {
         let perch = surface.motion(&self.perch, TICK);
         let perch = perch.map_or(DVec3::ZERO, |perch| perch.position);
         let above = perch + DVec3::Y * (ROCKS_ABOVE * self.height);
-        let rocks = self
-            .rocks
-            .step(surface, self.counts.tick, &mut self.world, above)?;
+        let (tick, world) = (self.counts.tick, &mut self.world);
+        let rocks = self.rocks.step(surface, tick, world, above)?;
         self.times.push([own, rocks]);
         self.rocks_fingerprint = self.rocks.fingerprint(&self.world.bodies);
         self.input = input;
@@ -256,11 +239,8 @@ impl<'a> Battle<'a> {
                 }
             }
         }
-        let (climber, scene) = (
-            self.climber().state().fingerprint(),
-            self.scene_fingerprint(),
-        );
-        self.hash.word(climber ^ scene);
+        let climber = self.climber().state().fingerprint();
+        self.hash.word(climber ^ self.scene_fingerprint());
     }
 
     /// Drops a rider on the creature's back again if it has been on the ground for a while or is out of the valley.
@@ -270,11 +250,8 @@ impl<'a> Battle<'a> {
         };
         let state = ride.climber.state();
         let support = state.support.map(|support| support.attachment.obstacle);
-        self.counts.grounded = if support == Some(TERRAIN) {
-            self.counts.grounded + 1
-        } else {
-            0
-        };
+        let (is_down, grounded) = (support == Some(TERRAIN), self.counts.grounded + 1);
+        self.counts.grounded = if is_down { grounded } else { 0 };
         let is_lost = !valley::contains(state.position.x, state.position.z);
         if self.counts.grounded < GROUNDED_TICKS && !is_lost {
             return Ok(());
@@ -282,16 +259,11 @@ impl<'a> Battle<'a> {
         let Some(perch) = ride.surface.motion(&self.perch, TICK) else {
             return Ok(());
         };
-        // Onto the skin that is uppermost there now, and at rest relative to the creature as a whole: the perch itself
-        // may be moving fast, and its velocity would throw the climber away.
+        // Onto the skin that is uppermost there now.
         let sky = perch.position + DVec3::Y * (4.0 * self.height);
         let top = ride.surface.cast_ray(sky, -DVec3::Y, 4.0 * self.height);
         let place = top.map_or(perch.position, |top| top.point);
-        ride.climber.restore(ClimberState {
-            velocity: ride.velocity,
-            ..*rider_above(place, DROP_AGAIN)?.state()
-        })?;
-        ride.rider = Rider::DROPPED;
+        ride.drop_again(place)?;
         self.counts.grounded = 0;
         self.counts.drops += 1;
         Ok(())
@@ -299,16 +271,17 @@ impl<'a> Battle<'a> {
 
     /// The state of the battle, without the rocks.
     pub fn snapshot(&self) -> BattleSnapshot {
-        let creature = match &self.part {
-            Part::Fights { arena, .. } => CreatureState::Fights(Box::new(arena.save())),
+        let (arena, played) = match &self.part {
+            Part::Fights { arena, .. } => (Some(Box::new(arena.save())), [0.0; 2]),
             Part::Rides(ride) => {
-                let (time, walked) = (ride.choreography.time, ride.choreography.walked);
-                CreatureState::Plays { time, walked }
+                let creature = &ride.choreography;
+                (None, [creature.time, creature.walked])
             }
         };
         BattleSnapshot {
             counts: self.counts,
-            creature,
+            arena,
+            played,
         }
     }
 
@@ -323,16 +296,111 @@ impl<'a> Battle<'a> {
         snapshot: &BattleSnapshot,
         state: ClimberState,
     ) -> Result<(), SceneError> {
-        match (&mut self.part, &snapshot.creature) {
-            (Part::Fights { arena, .. }, CreatureState::Fights(state)) => arena.restore(state)?,
-            (Part::Rides(ride), CreatureState::Plays { time, walked }) => {
+        match (&mut self.part, &snapshot.arena) {
+            (Part::Fights { arena, .. }, Some(state)) => arena.restore(state)?,
+            (Part::Rides(ride), None) => {
                 ride.climber.restore(state)?;
-                ride.go_to(*time, *walked)?;
+                ride.go_to(snapshot.played)?;
             }
             _ => Err("the snapshot is of a climb and the battle a ride, or the other way round")?,
         }
         self.counts = snapshot.counts;
         Ok(())
+    }
+
+    /// Calls `touch` with the climber's obstacles as they are now: terrain and creature.
+    pub fn touched<T>(&self, touch: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T) -> T {
+        let bodies = &self.world.bodies;
+        let fixed = |_: ColliderHandle, collider: &Collider| is_fixed(bodies, collider);
+        let terrain = RapierTerrain::of_world(&self.world, &self.before).with_filter(&fixed);
+        touch(&[(TERRAIN, &terrain), (CREATURE, self.surface())])
+    }
+
+    /// Number of ticks so far.
+    pub fn tick(&self) -> u64 {
+        self.counts.tick
+    }
+
+    /// A 64-bit hash of the climber's states, the rocks' poses and all that changes in a fight, in all ticks.
+    pub fn hash(&self) -> u64 {
+        self.hash.value()
+    }
+
+    /// The climber.
+    pub fn climber(&self) -> &Climber {
+        match &self.part {
+            Part::Fights { arena, .. } => arena.fighters()[0].climber(),
+            Part::Rides(ride) => &ride.climber,
+        }
+    }
+
+    /// The climber's report of the last tick.
+    pub fn report(&self) -> &StepReport {
+        match &self.part {
+            Part::Fights { arena, .. } => arena.fighters()[0].report(),
+            Part::Rides(ride) => &ride.report,
+        }
+    }
+
+    /// The creature's skin, as posed by the last tick.
+    pub fn surface(&self) -> &SkinnedSurface {
+        self.part.surface()
+    }
+
+    /// The creature's palette in the last tick.
+    pub fn palette(&self) -> &Palette {
+        match &self.part {
+            Part::Fights { arena, .. } => giant(arena).palette(),
+            Part::Rides(ride) => &ride.choreography.palette,
+        }
+    }
+
+    /// The state of the creature's brain, or the clip that it plays, as text for messages.
+    pub fn playing(&self) -> String {
+        match &self.part {
+            Part::Fights { arena, .. } => {
+                let life = giant(arena);
+                life.kind().brain().path(life.state().current()).to_owned()
+            }
+            Part::Rides(ride) => ride.choreography.playing(),
+        }
+    }
+
+    /// The arena of a climb.
+    pub fn arena(&self) -> Option<&Arena> {
+        match &self.part {
+            Part::Fights { arena, .. } => Some(arena),
+            Part::Rides(_) => None,
+        }
+    }
+
+    /// The creature of a climb, which lives by its brain.
+    pub fn life(&self) -> Option<&clamber_colossus::Creature> {
+        self.arena().map(giant)
+    }
+
+    /// The bot that plays a climb, its goal, and when it first came to the highest weak point, seconds.
+    pub fn bot(&self) -> Option<(&Bot, &Goal, Option<f64>)> {
+        match &self.part {
+            Part::Fights { bot, .. } => Some(bot.bot()),
+            Part::Rides(_) => None,
+        }
+    }
+
+    /// The place of a body of the physics world.
+    pub fn placed(&self, body: RigidBodyHandle) -> Similarity {
+        let body = &self.world.bodies[body];
+        Similarity {
+            rotation: body.rotation().as_dquat().normalize(),
+            scale: 1.0,
+            translation: body.translation().as_dvec3(),
+        }
+    }
+
+    /// A 64-bit hash of all beside the climber and the creature's pose: the rocks, and all that changes in a fight.
+    pub fn scene_fingerprint(&self) -> u64 {
+        let fight = self.arena().map_or(0, Arena::fingerprint);
+        self.rocks_fingerprint ^ fight.rotate_left(1)
     }
 }
 

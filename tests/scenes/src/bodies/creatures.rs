@@ -1,14 +1,12 @@
 //! Creatures of 20 m to hold on to.
 
-use std::error::Error;
-
-use clamber_climber::{ClimberConfig, ClimberInput};
+use clamber_climber::ClimberConfig;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::Obstacle;
 use glam::DVec3;
 
-use super::stage::{Scene, Thing};
-use crate::Creature;
+use super::stage::{Scene, Thing, holding};
+use crate::{Creature, SceneError};
 
 /// Height of the creatures, metres.
 const HEIGHT: f64 = 20.0;
@@ -32,42 +30,38 @@ pub fn mount(
     creature: &Creature,
     mount: &Mount,
     radius: f64,
-) -> Result<(Thing, DVec3), Box<dyn Error>> {
-    let clip = creature
-        .clip_like(&[mount.clip])
-        .ok_or("the creature has no such clip")?;
-    let rest = creature.rig.skeleton.rest_pose();
+) -> Result<(Thing, DVec3), SceneError> {
+    let clip = creature.clip_like(&[mount.clip]);
+    let clip = clip.ok_or("the creature has no such clip")?;
     let (mut place, ground) = creature.standing(HEIGHT)?;
     place.translation -= DVec3::Y * ground;
-    let collider = creature.rig.collider.clone();
-    let mut surface = SkinnedSurface::new(collider.clone());
-    let pose = clip.sample(&rest, 0.0, clamber_surface::rig::Playback::Loop)?;
-    surface.place(&creature.rig.skeleton.palette(&pose)?, place)?;
+    // Clips are made for creatures of 2 m; by Froude's law larger ones are slower.
+    let rate = 1.0 / (HEIGHT / 2.0).sqrt();
+    let thing = Thing {
+        mesh: creature.rig.collider.clone(),
+        motion: Box::new(move |_| place),
+        animation: Some((creature.rig.skeleton.clone(), clip.clone(), rate)),
+    };
+    let mut surface = SkinnedSurface::new(thing.mesh.clone());
+    surface.teleport(&thing.palette(0.0)?, place)?;
     // Towards the nearest skin at that height.
     let eye = DVec3::Y * (mount.height * HEIGHT) + mount.from * (2.0 * HEIGHT);
-    let mut found = None;
+    let mut found: Option<(f64, DVec3)> = None;
     for aside in 0..9 {
         let shift = mount.from.cross(DVec3::Y) * (f64::from(aside - 4) * 0.1 * HEIGHT);
         let hit = surface.cast_ray(eye + shift, -mount.from, 4.0 * HEIGHT);
-        let nearer = |other: f64| hit.is_some_and(|hit| hit.distance < other);
-        if found.is_none_or(|(distance, _)| nearer(distance)) {
-            found = hit
-                .map(|hit| (hit.distance, hit.point + hit.normal * radius))
-                .or(found);
+        if let Some(hit) = hit
+            && found.is_none_or(|(distance, _)| hit.distance < distance)
+        {
+            found = Some((hit.distance, hit.point + hit.normal * radius));
         }
     }
     let (_, start) = found.ok_or("nothing to hold at this height")?;
-    // Clips are made for creatures of 2 m; by Froude's law larger ones are slower.
-    let rate = 1.0 / (HEIGHT / 2.0).sqrt();
-    let animation = (creature.rig.skeleton.clone(), clip.clone());
-    Ok((
-        Thing::creature(collider, animation, rate, move |_| place),
-        start,
-    ))
+    Ok((thing, start))
 }
 
 /// Holds on to a creature and climbs: up for a second, still for a second, aside, down, and so on.
-pub fn climb(creature: &Creature, at: &Mount, speed: f64) -> Result<Scene, Box<dyn Error>> {
+pub fn climb(creature: &Creature, at: &Mount, speed: f64) -> Result<Scene, SceneError> {
     let mut config = ClimberConfig::colossus_climber();
     config.stamina = None;
     if let Some(grip) = &mut config.grip {
@@ -76,27 +70,20 @@ pub fn climb(creature: &Creature, at: &Mount, speed: f64) -> Result<Scene, Box<d
     }
     let (thing, start) = mount(creature, at, config.body.radius)?;
     let aside = at.from.cross(DVec3::Y);
-    let name = creature.name.clone();
+    let name = format!("{} at {speed} m/s", creature.name);
+    let scene = Scene::new(name, 60.0, start, vec![thing], move |moment| {
+        let climb = match (moment.time / 1.5) as u64 % 8 {
+            0 | 4 => DVec3::Y,
+            2 => aside,
+            6 => -aside,
+            3 => DVec3::NEG_Y,
+            _ => DVec3::ZERO,
+        };
+        holding(DVec3::ZERO, climb)
+    });
     Ok(Scene {
-        name: format!("{name} at {speed} m/s"),
-        seconds: 60.0,
         config,
-        start,
-        things: vec![thing],
         grips_all: true,
-        input: Box::new(move |moment| {
-            let climb = match (moment.time / 1.5) as u64 % 8 {
-                0 | 4 => DVec3::Y,
-                2 => aside,
-                6 => -aside,
-                3 => DVec3::NEG_Y,
-                _ => DVec3::ZERO,
-            };
-            ClimberInput {
-                grip: true,
-                climb,
-                ..ClimberInput::IDLE
-            }
-        }),
+        ..scene
     })
 }

@@ -1,15 +1,14 @@
 //! Ground to stand and walk on.
 
-use std::error::Error;
-
 use clamber_climber::{ClimberConfig, ClimberInput};
 use clamber_surface::mesh::SurfaceKind;
 use glam::DVec3;
 
 use super::stage::{Scene, Thing, floor, still, walking, when};
+use crate::SceneError;
 use crate::controllers::{Mesh, Solid, shifted, turned};
 
-type Made = Result<Scene, Box<dyn Error>>;
+type Made = Result<Scene, SceneError>;
 
 /// A walk along +Z, after half a second, over things that start below the feet.
 fn scene(name: String, speed: f64, things: Vec<Thing>, feet: DVec3) -> Scene {
@@ -81,9 +80,8 @@ pub fn stairs(up: bool, speed: f64) -> Made {
 /// ground.
 pub fn block() -> Made {
     // The top rises to +X, which is the figure's left: it faces +Z.
-    let (near, far, tilt) = (0.03, 2.0, libm::tan(core::f64::consts::FRAC_PI_6));
-    let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
-    let mut mesh = Mesh::block(corner(near, -0.5, -1.0), corner(far, 0.4, 1.0));
+    let (near, tilt) = (0.03, libm::tan(core::f64::consts::FRAC_PI_6));
+    let mut mesh = Mesh::block(DVec3::new(near, -0.5, -1.0), DVec3::new(2.0, 0.4, 1.0));
     for top in mesh.positions.iter_mut().filter(|p| p.y > 0.0) {
         top.y += (top.x - near) * tilt;
     }

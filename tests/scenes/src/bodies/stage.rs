@@ -1,16 +1,18 @@
-use std::error::Error;
 use std::sync::Arc;
 
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberState, StepRules,
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberState, Knockback, StepRules,
 };
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource, SurfaceKind, SurfaceTag};
-use clamber_surface::rig::{Clip, Palette, Playback, Pose, Skeleton};
+use clamber_surface::mesh::{
+    ColliderBuildOptions, ColliderMesh, MeshSource, SurfaceKind, SurfaceTag,
+};
+use clamber_surface::rig::{Clip, Palette, Playback, Skeleton};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
+use crate::SceneError;
 use crate::controllers::Solid;
 
 /// A pose as a function of time, seconds.
@@ -18,11 +20,10 @@ pub type Motion = Box<dyn Fn(f64) -> Similarity>;
 
 /// Something to stand on or hold.
 pub struct Thing {
-    mesh: Arc<ColliderMesh>,
-    motion: Motion,
-    animation: Option<(Skeleton, Clip)>,
-    /// How much of the clip's seconds pass in a second.
-    rate: f64,
+    pub(super) mesh: Arc<ColliderMesh>,
+    pub(super) motion: Motion,
+    /// The clip that a creature plays, and how much of its seconds pass in a second.
+    pub(super) animation: Option<(Skeleton, Clip, f64)>,
 }
 
 impl Thing {
@@ -31,7 +32,7 @@ impl Thing {
         solid: &Solid,
         kind: SurfaceKind,
         motion: impl Fn(f64) -> Similarity + 'static,
-    ) -> Result<Self, Box<dyn Error>> {
+    ) -> Result<Self, SceneError> {
         let mesh = solid.mesh();
         let positions: Vec<_> = mesh.positions.iter().map(|p| p.as_vec3()).collect();
         let source = MeshSource {
@@ -39,34 +40,17 @@ impl Thing {
             ..MeshSource::rigid(&positions, &mesh.triangles)
         };
         Ok(Self {
-            mesh: Arc::new(ColliderMesh::build(&source, &BuildOptions::default())?.0),
+            mesh: Arc::new(ColliderMesh::build(&source, &ColliderBuildOptions::default())?.0),
             motion: Box::new(motion),
             animation: None,
-            rate: 1.0,
         })
     }
 
-    /// A creature that plays a clip.
-    pub fn creature(
-        mesh: Arc<ColliderMesh>,
-        animation: (Skeleton, Clip),
-        rate: f64,
-        motion: impl Fn(f64) -> Similarity + 'static,
-    ) -> Self {
-        Self {
-            mesh,
-            motion: Box::new(motion),
-            animation: Some(animation),
-            rate,
-        }
-    }
-
-    fn palette(&self, time: f64) -> Result<Palette, Box<dyn Error>> {
-        let Some((skeleton, clip)) = &self.animation else {
+    pub(super) fn palette(&self, time: f64) -> Result<Palette, SceneError> {
+        let Some((skeleton, clip, rate)) = &self.animation else {
             return Ok(Palette::from_matrices([Affine::IDENTITY]));
         };
-        let rest: Pose = skeleton.rest_pose();
-        let pose = clip.sample(&rest, time * self.rate, Playback::Loop)?;
+        let pose = clip.sample(&skeleton.rest_pose(), time * rate, Playback::Loop)?;
         Ok(skeleton.palette(&pose)?)
     }
 }
@@ -95,6 +79,8 @@ pub struct Scene {
     pub grips_all: bool,
     /// What the player does.
     pub input: Box<dyn Fn(&Moment<'_>) -> ClimberInput>,
+    /// A blow that strikes the climber after half a second.
+    pub knockback: Option<Knockback>,
 }
 
 impl Scene {
@@ -117,6 +103,7 @@ impl Scene {
             things,
             grips_all: false,
             input: Box::new(input),
+            knockback: None,
         }
     }
 }
@@ -126,13 +113,22 @@ pub(super) fn still(_: f64) -> Similarity {
 }
 
 /// A floor of stone that moves.
-pub(super) fn floor(motion: impl Fn(f64) -> Similarity + 'static) -> Result<Thing, Box<dyn Error>> {
+pub(super) fn floor(motion: impl Fn(f64) -> Similarity + 'static) -> Result<Thing, SceneError> {
     Thing::solid(&Solid::floor(60.0), SurfaceKind::Stone, motion)
 }
 
 /// The direction if the condition holds, or else zero.
 pub(super) fn when(condition: bool, direction: DVec3) -> DVec3 {
     if condition { direction } else { DVec3::ZERO }
+}
+
+pub(super) fn holding(walk: DVec3, climb: DVec3) -> ClimberInput {
+    ClimberInput {
+        grip: true,
+        walk,
+        climb,
+        ..ClimberInput::IDLE
+    }
 }
 
 pub(super) fn walking(walk: DVec3) -> ClimberInput {
@@ -157,11 +153,11 @@ pub struct Stage<'s> {
 
 impl<'s> Stage<'s> {
     /// At the start.
-    pub fn new(scene: &'s Scene) -> Result<Self, Box<dyn Error>> {
+    pub fn new(scene: &'s Scene) -> Result<Self, SceneError> {
         let mut surfaces = Vec::new();
         for thing in &scene.things {
             let mut surface = SkinnedSurface::new(thing.mesh.clone());
-            surface.place(&thing.palette(0.0)?, (thing.motion)(0.0))?;
+            surface.teleport(&thing.palette(0.0)?, (thing.motion)(0.0))?;
             surfaces.push(surface);
         }
         Ok(Self {
@@ -179,26 +175,30 @@ impl<'s> Stage<'s> {
     }
 
     /// The palette of a thing now.
-    pub fn palette(&self, thing: usize) -> Result<Palette, Box<dyn Error>> {
+    pub fn palette(&self, thing: usize) -> Result<Palette, SceneError> {
         self.scene.things[thing].palette(self.time)
     }
 
     /// Lets a tick pass: everything moves, then the climber steps. Everything can be gripped that is fur.
-    pub fn tick(&mut self, dt: f64) -> Result<(), Box<dyn Error>> {
+    pub fn tick(&mut self, dt: f64) -> Result<(), SceneError> {
         let input = (self.scene.input)(&Moment {
             time: self.time,
             state: self.climber.state(),
         });
+        let before = self.time;
         self.time += dt;
         for (thing, surface) in self.scene.things.iter().zip(&mut self.surfaces) {
             surface.advance(&thing.palette(self.time)?, (thing.motion)(self.time))?;
         }
         let obstacles = obstacles(&self.surfaces);
-        let rules = if self.scene.grips_all {
+        let mut rules = if self.scene.grips_all {
             StepRules::by(&|query| query.usual().with_grip(true))
         } else {
             StepRules::default()
         };
+        if (0.499..0.512).contains(&before) {
+            rules.knockback = self.scene.knockback;
+        }
         let report = self.climber.step_with(&input, &obstacles, &rules, dt)?;
         self.events = report.events;
         Ok(())

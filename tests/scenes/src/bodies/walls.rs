@@ -1,16 +1,15 @@
 //! Walls and ledges to hold, falls, blows and ceilings.
 
-use std::error::Error;
-
-use clamber_climber::{Blow, ClimberInput, ClimberMode};
+use clamber_climber::{ClimberInput, ClimberMode, Knockback};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceKind;
 use glam::DVec3;
 
-use super::stage::{Moment, Scene, Thing, floor, still, walking, when};
+use super::stage::{Moment, Scene, Thing, floor, holding, still, walking, when};
+use crate::SceneError;
 use crate::controllers::{Solid, shifted};
 
-type Made<T> = Result<T, Box<dyn Error>>;
+type Made<T> = Result<T, SceneError>;
 
 /// Start of a climber that is in the air before a wall.
 const BEFORE: DVec3 = DVec3::new(0.0, 2.0, -0.41);
@@ -18,34 +17,14 @@ const BEFORE: DVec3 = DVec3::new(0.0, 2.0, -0.41);
 /// Start of a climber that stands on the ground.
 const STANDING: DVec3 = DVec3::new(0.0, 0.42, 0.0);
 
-fn block(
-    kind: SurfaceKind,
-    [low, high]: [[f64; 3]; 2],
-    motion: impl Fn(f64) -> Similarity + 'static,
-) -> Made<Thing> {
-    Thing::solid(&Solid::block(low, high), kind, motion)
-}
-
-fn stone(corners: [[f64; 3]; 2]) -> Made<Thing> {
-    block(SurfaceKind::Stone, corners, still)
+fn stone(low: [f64; 3], high: [f64; 3]) -> Made<Thing> {
+    Thing::solid(&Solid::block(low, high), SurfaceKind::Stone, still)
 }
 
 /// A wall of fur with its face at z = 0; the climber is at z < 0.
 fn fur(low: f64, motion: impl Fn(f64) -> Similarity + 'static) -> Made<Thing> {
-    block(
-        SurfaceKind::Fur,
-        [[-50.0, low, 0.0], [50.0, 60.0, 8.0]],
-        motion,
-    )
-}
-
-fn holding(walk: DVec3, climb: DVec3) -> ClimberInput {
-    ClimberInput {
-        grip: true,
-        walk,
-        climb,
-        ..ClimberInput::IDLE
-    }
+    let wall = Solid::block([-50.0, low, 0.0], [50.0, 60.0, 8.0]);
+    Thing::solid(&wall, SurfaceKind::Fur, motion)
 }
 
 /// Climbs a wall of fur: `way` is in world space, its length the share of 1.5 m/s; +Y is up, -X to the right.
@@ -81,10 +60,8 @@ fn towards(moment: &Moment<'_>) -> DVec3 {
 
 /// A scene before a ledge 3 m above the ground.
 fn at_a_ledge(name: &str, input: impl Fn(&Moment<'_>) -> ClimberInput + 'static) -> Made<Scene> {
-    let things = vec![
-        floor(still)?,
-        stone([[-50.0, -2.0, 0.0], [50.0, 3.0, 8.0]])?,
-    ];
+    let wall = stone([-50.0, -2.0, 0.0], [50.0, 3.0, 8.0])?;
+    let things = vec![floor(still)?, wall];
     let start = DVec3::new(0.0, 2.2, -0.42);
     Ok(Scene::new(name, 5.0, start, things, input))
 }
@@ -115,7 +92,7 @@ pub fn drop_off() -> Made<Scene> {
 
 /// Stands, jumps after half a second, and falls from another 3 m.
 pub fn fall() -> Made<Scene> {
-    let things = vec![floor(still)?, stone([[-3.0, 2.0, -3.0], [3.0, 3.0, 1.0]])?];
+    let things = vec![floor(still)?, stone([-3.0, 2.0, -3.0], [3.0, 3.0, 1.0])?];
     let start = DVec3::new(0.0, 3.42, 0.0);
     Ok(Scene::new("jump and fall", 3.5, start, things, |moment| {
         ClimberInput {
@@ -127,10 +104,8 @@ pub fn fall() -> Made<Scene> {
 
 /// Steps off a wall of half a metre.
 pub fn step_off() -> Made<Scene> {
-    let things = vec![
-        floor(still)?,
-        stone([[-3.0, -1.0, -3.0], [3.0, 0.45, 0.6]])?,
-    ];
+    let wall = stone([-3.0, -1.0, -3.0], [3.0, 0.45, 0.6])?;
+    let things = vec![floor(still)?, wall];
     let start = DVec3::new(0.0, 0.86, 0.0);
     Ok(Scene::new("steps off", 3.0, start, things, |moment| {
         let walks = moment.time > 0.4 && moment.time < 1.4;
@@ -163,28 +138,24 @@ pub fn all_holds() -> Made<Scene> {
 /// Stands, and is knocked over; tumbles, lies and gets up.
 pub fn knock() -> Made<Scene> {
     let things = vec![floor(still)?];
-    Ok(Scene::new(
-        "knocked over",
-        5.0,
-        STANDING,
-        things,
-        |moment| ClimberInput {
-            blow: (0.499..0.512).contains(&moment.time).then_some(Blow {
-                velocity: DVec3::new(1.0, 3.0, -5.0),
-                damage: 0.1,
-                by: None,
-            }),
-            ..ClimberInput::IDLE
-        },
-    ))
+    let mut scene = Scene::new("knocked over", 5.0, STANDING, things, |_| {
+        ClimberInput::IDLE
+    });
+    scene.knockback = Some(Knockback {
+        velocity: DVec3::new(1.0, 3.0, -5.0),
+        damage: 0.1,
+        by: None,
+    });
+    Ok(scene)
 }
 
 /// A ceiling that comes down to this height of its middle on a climber that stands, metres.
 fn below_a_ceiling(name: &str, low: f64) -> Made<Scene> {
     let motion =
         move |time: f64| shifted(DVec3::Y * (low + (1.6 - 0.8 * time).max(0.0)) - DVec3::Z * 6.0);
-    let corners = [[-3.0, -3.0, 0.0], [3.0, 3.0, 12.0]];
-    let things = vec![floor(still)?, block(SurfaceKind::Stone, corners, motion)?];
+    let ceiling = Solid::block([-3.0, -3.0, 0.0], [3.0, 3.0, 12.0]);
+    let ceiling = Thing::solid(&ceiling, SurfaceKind::Stone, motion)?;
+    let things = vec![floor(still)?, ceiling];
     Ok(Scene::new(name, 4.0, STANDING, things, |_| {
         ClimberInput::IDLE
     }))

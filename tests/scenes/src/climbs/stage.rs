@@ -1,25 +1,18 @@
 //! A creature that moves while it is climbed.
 
-use std::error::Error;
 use std::f64::consts::TAU;
 
-use clamber_navigation::{ClimbGraph, Forecast};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::VertexId;
-use clamber_surface::rig::Palette;
+use clamber_surface::rig::{Clip, Palette, Playback};
 use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 
-use super::moves::Moves;
 use crate::{Creature, SceneError};
 
 /// How a creature moves while it is climbed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
-    /// It stays at rest.
-    Still,
-    /// It idles and walks by turns.
-    Turns,
     /// It plays its idle clip, or else its first clip.
     Idle,
     /// It plays its walk, on the spot unless the clip itself moves the root.
@@ -35,42 +28,37 @@ pub struct Stage<'a> {
     /// The corners of one triangle at each vertex.
     triangle_at: Vec<Option<[VertexId; 3]>>,
     place: Similarity,
-    /// Height of the ground, metres.
-    pub ground: f64,
-    moves: Moves,
+    clip: Option<&'a Clip>,
+    /// Seconds of the clip per second.
+    tempo: f64,
     sways: bool,
 }
 
 impl<'a> Stage<'a> {
-    /// A creature whose rest pose is `height` metres high, in its first pose. `tempo` is the rate at which
-    /// [`Motion::Idle`], [`Motion::Walk`] and [`Motion::Shake`] play their clip. Giants move slower than the creatures
-    /// that clips are made for, by the square root of their size.
+    /// A creature whose rest pose is `height` metres high, in its first pose. `tempo` is the rate of its clip. Giants
+    /// move slower than the creatures that clips are made for, by the square root of their size.
     pub fn new(
         creature: &'a Creature,
         (height, tempo): (f64, f64),
         motion: Motion,
-    ) -> Result<Self, Box<dyn Error>> {
-        let (place, ground) = creature.standing(height)?;
+    ) -> Result<Self, SceneError> {
         let mut triangle_at = vec![None; creature.rig.collider.positions().len()];
         for corners in creature.rig.collider.triangles() {
             for vertex in corners {
                 triangle_at[vertex.index()] = Some(*corners);
             }
         }
+        let words = match motion {
+            Motion::Walk => ["walk", "run", "idle"],
+            Motion::Idle | Motion::Shake => ["idle", "breathe", "survey"],
+        };
         let mut stage = Self {
             creature,
             surface: SkinnedSurface::new(creature.rig.collider.clone()),
             triangle_at,
-            place,
-            ground,
-            moves: match motion {
-                Motion::Still => Moves::none(),
-                Motion::Turns => Moves::by_turns(creature, height / place.scale, height)?,
-                Motion::Walk => Moves::one(creature, &["walk", "run", "idle"], tempo),
-                Motion::Idle | Motion::Shake => {
-                    Moves::one(creature, &["idle", "breathe", "survey"], tempo)
-                }
-            },
+            place: creature.standing(height)?.0,
+            clip: creature.clip_like(&words).or(creature.rig.clips.first()),
+            tempo,
             sways: motion == Motion::Shake,
         };
         stage.place(0.0)?;
@@ -80,7 +68,7 @@ impl<'a> Stage<'a> {
     /// Puts the creature into its pose at a time, seconds, without motion.
     pub fn place(&mut self, time: f64) -> Result<(), SceneError> {
         let (palette, root) = self.pose(time)?;
-        Ok(self.surface.place(&palette, root)?)
+        Ok(self.surface.teleport(&palette, root)?)
     }
 
     /// Moves the creature on to its pose at a time, seconds: the next tick.
@@ -90,23 +78,17 @@ impl<'a> Stage<'a> {
     }
 
     /// The palette at a time, seconds, and the place of the creature.
-    pub fn pose(&self, time: f64) -> Result<(Palette, Similarity), SceneError> {
-        let pose = self.moves.pose(self.creature, time)?;
+    fn pose(&self, time: f64) -> Result<(Palette, Similarity), SceneError> {
+        let skeleton = &self.creature.rig.skeleton;
+        let mut pose = skeleton.rest_pose();
+        if let Some(clip) = self.clip {
+            clip.sample_into(time * self.tempo, Playback::Loop, &mut pose)?;
+        }
         let mut root = self.place;
         if self.sways {
             root.translation += DVec3::new(0.05, 0.02, 0.03) * libm::sin(1.2 * TAU * time);
         }
-        Ok((self.creature.rig.skeleton.palette(&pose)?, root))
-    }
-
-    /// The clips that the creature is about to play from a time on, seconds.
-    pub fn forecast(&self, graph: &ClimbGraph, time: f64) -> Forecast {
-        self.moves.forecast(self.creature, graph, time)
-    }
-
-    /// Seconds of a clip that pass in a second.
-    pub fn rate(&self) -> f64 {
-        self.moves.rate
+        Ok((skeleton.palette(&pose)?, root))
     }
 
     /// The creature's skin.

@@ -24,10 +24,7 @@ fn climb() -> Scene {
     let scene = Scene::new(18, name, 200, set, |seen| {
         (6.0 - seen.end().x).max(3.0 - seen.end().y).max(0.0)
     });
-    Scene {
-        always_stands: false,
-        ..scene.walking(DVec3::X * 6.0)
-    }
+    scene.walking(DVec3::X * 6.0).in_the_air()
 }
 
 /// A walk into a slope of 0.6 rad, with a limit 3 degrees below it: a standing climber may exceed its limit by 2
@@ -39,10 +36,7 @@ fn too_steep() -> Scene {
     let scene = Scene::new(18, name, 200, set, |seen| {
         seen.most(|_, p| (p.x - 4.5).max(p.y - 2.0))
     });
-    Scene {
-        always_stands: false,
-        ..scene.walking(DVec3::X * 6.0)
-    }
+    scene.walking(DVec3::X * 6.0).in_the_air()
 }
 
 /// A walk in three directions on a level floor. Error: the largest change of height in a tick.
@@ -74,10 +68,7 @@ fn seam() -> Scene {
         let sunk = seen.most(|_, p| (p.y - seen.start.y).abs());
         sunk.max(12.0 - seen.end().x)
     });
-    Scene {
-        asked: 5e-2,
-        ..scene.walking(DVec3::X * 2.0)
-    }
+    scene.walking(DVec3::X * 2.0).within(5e-2)
 }
 
 /// A walk up 3 m of stairs, in one and a half times the time that 4 m/s take on the level.

@@ -89,22 +89,19 @@ fn ride((number, name, asked, ticks, half, feet, motion): Ride) -> Scene {
         let local = motion(0.0).inverse_transform_point(seen.start);
         seen.most(|time, p| motion(time).transform_point(local).distance(p))
     });
-    Scene { asked, ..scene }
+    scene.within(asked)
 }
 
 /// Ticks before a jump.
 const AFTER: u32 = 30;
 
 /// A scene with one jump, after half a second.
-fn with_jump(scene: Scene) -> Scene {
-    Scene {
-        always_stands: false,
-        input: Box::new(|tick| Input {
-            jump: tick == AFTER + 1,
-            ..IDLE
-        }),
-        ..scene
-    }
+fn with_jump(mut scene: Scene) -> Scene {
+    scene.input = Box::new(|tick| Input {
+        jump: tick == AFTER + 1,
+        ..IDLE
+    });
+    scene.in_the_air()
 }
 
 /// A jump on a platform that moves sideways. Error: distance from the start, on the platform, at the end.
@@ -136,10 +133,7 @@ fn jump_off_a_lift() -> Scene {
         let highest = seen.most(|time, p| p.y - seen.start.y + 3.0 * time);
         (highest - height).abs()
     });
-    Scene {
-        asked: 3.0 * TICK,
-        ..with_jump(scene)
-    }
+    with_jump(scene).within(3.0 * TICK)
 }
 
 /// A walk up 3 m of stairs that move up, back and to a side, in one and a half times the time that 4 m/s take on the

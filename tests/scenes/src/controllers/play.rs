@@ -1,11 +1,10 @@
 //! A scene, and how a character fares in it.
 
-use std::error::Error;
-
 use glam::DVec3;
 
 use super::set::{IDLE, Input, Set};
 use super::{ground, platforms, walls};
+use crate::SceneError;
 use crate::measure::quantile;
 
 /// A character's positions in a scene.
@@ -79,14 +78,27 @@ impl Scene {
         self.input = Box::new(move |_| Input { walk, ..IDLE });
         self
     }
+
+    /// The same scene with another bound for the error, in metres.
+    pub(super) fn within(self, asked: f64) -> Self {
+        Self { asked, ..self }
+    }
+
+    /// The same scene with a character that need not stand in every tick.
+    pub(super) fn in_the_air(self) -> Self {
+        Self {
+            always_stands: false,
+            ..self
+        }
+    }
 }
 
 /// All thirty scenes.
 pub fn all() -> Vec<Scene> {
-    [platforms::scenes(), walls::scenes(), ground::scenes()]
-        .into_iter()
-        .flatten()
-        .collect()
+    let mut all = platforms::scenes();
+    all.extend(walls::scenes());
+    all.extend(ground::scenes());
+    all
 }
 
 /// Ticks in which nothing moves, for the character to come to rest.
@@ -96,7 +108,7 @@ const SETTLE: u32 = 60;
 pub trait Controller {
     /// Takes the world to a time, in seconds, and the character with it. Returns the time that the character's part of
     /// the tick took, in microseconds.
-    fn step(&mut self, time: f64, input: &Input) -> Result<f64, Box<dyn Error>>;
+    fn step(&mut self, time: f64, input: &Input) -> Result<f64, SceneError>;
 
     /// The centre of the capsule's lower ball: [`RADIUS`](super::RADIUS) above the feet.
     fn position(&self) -> DVec3;
@@ -122,7 +134,7 @@ pub fn play(
     scene: &Scene,
     character: &mut dyn Controller,
     most: u32,
-) -> Result<Outcome, Box<dyn Error>> {
+) -> Result<Outcome, SceneError> {
     for _ in 0..SETTLE {
         character.step(0.0, &IDLE)?;
     }

@@ -84,13 +84,8 @@ impl Set {
 
     /// Adds a solid that moves.
     #[must_use]
-    pub fn with(mut self, solid: Solid, motion: impl Fn(f64) -> Similarity + 'static) -> Self {
-        self.pieces.push(Piece {
-            solid,
-            motion: Rc::new(motion),
-            moves: true,
-        });
-        self
+    pub fn with(self, solid: Solid, motion: impl Fn(f64) -> Similarity + 'static) -> Self {
+        self.with_piece(solid, Rc::new(motion), true)
     }
 
     /// Adds terrain, in world space.
@@ -101,11 +96,15 @@ impl Set {
 
     /// Adds terrain at a pose.
     #[must_use]
-    pub fn with_placed(mut self, solid: Solid, pose: Similarity) -> Self {
+    pub fn with_placed(self, solid: Solid, pose: Similarity) -> Self {
+        self.with_piece(solid, Rc::new(move |_| pose), false)
+    }
+
+    fn with_piece(mut self, solid: Solid, motion: Motion, moves: bool) -> Self {
         self.pieces.push(Piece {
             solid,
-            motion: Rc::new(move |_| pose),
-            moves: false,
+            motion,
+            moves,
         });
         self
     }

@@ -75,9 +75,8 @@ impl Solid {
     /// A ramp: level from x = -10 to x = 2, then 30 m up along +X at an angle, radians.
     pub fn ramp(angle: f64) -> Self {
         let end = DVec3::new(2.0 + 30.0 * libm::cos(angle), 30.0 * libm::sin(angle), 0.0);
-        let corner = |at: DVec3, z: f64| DVec3::new(at.x, at.y, z);
-        let (start, foot) = (DVec3::X * -10.0, DVec3::X * 2.0);
-        let positions = [start, foot, end].map(|at| [corner(at, -5.0), corner(at, 5.0)]);
+        let line = [DVec3::X * -10.0, DVec3::X * 2.0, end];
+        let positions = line.map(|at| [at.with_z(-5.0), at.with_z(5.0)]);
         Self::Mesh(Mesh {
             positions: positions.concat(),
             triangles: vec![[0, 1, 3], [0, 3, 2], [2, 3, 5], [2, 5, 4]],
@@ -109,12 +108,10 @@ impl Mesh {
             [0, 2, 3, 1],
             [4, 5, 7, 6],
         ];
-        let triangles = faces
-            .iter()
-            .flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+        let triangles = faces.map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
         Self {
             positions: (0..8).map(corner).collect(),
-            triangles: triangles.collect(),
+            triangles: triangles.concat(),
         }
     }
 

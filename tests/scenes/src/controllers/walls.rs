@@ -20,10 +20,7 @@ fn pushed(name: &'static str, speed: f64, ticks: u32) -> Scene {
             depth.max(off.length())
         })
     });
-    Scene {
-        asked: 5e-2,
-        ..scene
-    }
+    scene.within(5e-2)
 }
 
 /// A wall pushes an idle character to and fro. Error: as [`pushed`], or how far the character goes beyond the wall's
@@ -61,20 +58,14 @@ pub(super) fn scenes() -> Vec<Scene> {
         let x = -1.0 + 0.2 * f64::from(k);
         Solid::block([x, -0.5, -0.2 - RADIUS], [x + 0.2, 2.0, -RADIUS])
     });
-    let (name, walk) = ("a walk along a wall, into it", DVec3::new(5.0, 0.0, -1.0));
-    let along = alongside(5, name, vec![smooth], walk);
-    let (name, walk) = (
-        "a walk along 30 pillars, into them",
-        DVec3::new(2.0, 0.0, -1.0),
-    );
+    let walk = |speed: f64| DVec3::new(speed, 0.0, -1.0);
+    let along = alongside(5, "a walk along a wall, into it", vec![smooth], walk(5.0));
+    let name = "a walk along 30 pillars, into them";
     vec![
         pushed("a wall pushes at 2 m/s", 2.0, 240),
         pushed("a wall pushes at 30 m/s", 30.0, 120),
         shoved(),
-        Scene {
-            asked: 1e-2,
-            ..along
-        },
-        alongside(28, name, pillars.collect(), walk),
+        along.within(1e-2),
+        alongside(28, name, pillars.collect(), walk(2.0)),
     ]
 }

@@ -29,10 +29,8 @@ pub(super) fn coarsen(pieces: &mut Pieces, vertices: usize) {
             around[corner as usize].insert(index as u32);
         }
     }
-    let mut left = around
-        .iter()
-        .filter(|triangles| !triangles.is_empty())
-        .count();
+    let unused = around.iter().filter(|triangles| triangles.is_empty());
+    let mut left = around.len() - unused.count();
     let mut coarsening = Coarsening {
         moves: vec![0; around.len()],
         around,
@@ -80,11 +78,8 @@ impl Coarsening<'_> {
         for neighbour in self.neighbours(point) {
             if !half || neighbour > point {
                 let ends = edge(point, neighbour);
-                queue.push(Reverse((
-                    self.pieces.length(ends),
-                    ends,
-                    self.moves_of(ends),
-                )));
+                let length = self.pieces.length(ends);
+                queue.push(Reverse((length, ends, self.moves_of(ends))));
             }
         }
     }
@@ -93,20 +88,15 @@ impl Coarsening<'_> {
     /// would not stay a manifold, or a triangle would flip.
     fn collapse(&mut self, ends: Edge) -> bool {
         let [a, b] = ends.map(|end| end as usize);
-        let shared: Vec<u32> = self.around[a]
-            .intersection(&self.around[b])
-            .copied()
-            .collect();
+        let shared = self.around[a].intersection(&self.around[b]);
+        let shared: Vec<u32> = shared.copied().collect();
         let (of_a, of_b) = (self.neighbours(ends[0]), self.neighbours(ends[1]));
         if shared.len() != 2 || of_a.intersection(&of_b).count() != 2 {
             return false;
         }
         let middle = Point::between(&self.pieces.points[a], &self.pieces.points[b]);
-        let touched = self.around[a].symmetric_difference(&self.around[b]);
-        if touched
-            .into_iter()
-            .any(|triangle| self.turns(*triangle, ends, middle.position))
-        {
+        let mut touched = self.around[a].symmetric_difference(&self.around[b]);
+        if touched.any(|triangle| self.turns(*triangle, ends, middle.position)) {
             return false;
         }
         for triangle in shared {

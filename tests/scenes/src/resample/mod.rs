@@ -4,7 +4,7 @@ mod coarsen;
 mod refine;
 
 use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag, VertexId,
+    ColliderBuildOptions, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag, VertexId,
     normalize_influences,
 };
 use glam::DVec3;
@@ -119,6 +119,6 @@ impl Pieces {
             joint_count,
             ..MeshSource::default()
         };
-        Ok(ColliderMesh::build(&source, &BuildOptions::default())?.0)
+        Ok(ColliderMesh::build(&source, &ColliderBuildOptions::default())?.0)
     }
 }

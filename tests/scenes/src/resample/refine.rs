@@ -15,9 +15,9 @@ pub(super) fn refine(pieces: &mut Pieces, vertices: usize) {
         }
     }
     // Longest first, ties by the smaller edge: the hash map's order has no effect.
-    let mut queue: BinaryHeap<(u64, Reverse<Edge>)> = sharing
-        .keys()
-        .map(|edge| (pieces.length(*edge), Reverse(*edge)))
+    let edges = sharing.keys().copied();
+    let mut queue: BinaryHeap<(u64, Reverse<Edge>)> = edges
+        .map(|edge| (pieces.length(edge), Reverse(edge)))
         .collect();
     while pieces.points.len() < vertices {
         let Some((_, Reverse([a, b]))) = queue.pop() else {
@@ -52,9 +52,7 @@ pub(super) fn refine(pieces: &mut Pieces, vertices: usize) {
             sharing.insert(edge(middle, apex), vec![old, new]);
             made.push(edge(middle, apex));
         }
-        queue.extend(
-            made.into_iter()
-                .map(|edge| (pieces.length(edge), Reverse(edge))),
-        );
+        let made = made.into_iter();
+        queue.extend(made.map(|edge| (pieces.length(edge), Reverse(edge))));
     }
 }

@@ -159,7 +159,6 @@ fn input(rng: &mut Rng) -> ClimberInput {
         crouch: rng.u8(0..8) == 0,
         grip: rng.u8(0..5) > 0,
         actions: if rng.bool() { 1 << rng.u32(0..4) } else { 0 },
-        blow: None,
     }
 }
 

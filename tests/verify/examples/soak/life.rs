@@ -7,11 +7,11 @@ mod rider;
 use std::error::Error;
 use std::sync::Arc;
 
-use clamber_climber::{Blow, ClimberInput, ClimberMode};
+use clamber_climber::{ClimberMode, Knockback, StepRules};
 use clamber_colossus::brain::StateId;
 use clamber_colossus::{
     Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, Noise, Person, Riding,
-    Surroundings, Wound,
+    Surroundings,
 };
 use clamber_scenes::{giant, valley};
 use clamber_surface::mesh::TriangleId;
@@ -174,16 +174,17 @@ impl Life {
         let mut lost = Vec::new();
         for (index, rider) in self.riders.iter_mut().enumerate() {
             let struck = report.blows.iter().rfind(|blow| blow.person == rider.id);
-            let blow = struck.map(|blow| Blow {
+            let knockback = struck.map(|blow| Knockback {
                 velocity: blow.velocity,
                 damage: blow.damage.clamp(0.0, 1.0),
                 by: Some(GIANT),
             });
-            let input = ClimberInput {
-                blow,
-                ..rider.input(&self.giant, seconds, is_quiet)
+            let rules = StepRules {
+                knockback,
+                ..StepRules::default()
             };
-            rider.climber.step(&input, &obstacles, TICK)?;
+            let input = rider.input(&self.giant, seconds, is_quiet);
+            rider.climber.step_with(&input, &obstacles, &rules, TICK)?;
             let state = rider.climber.state();
             let above = state.position + DVec3::Y * 5.0;
             let is_lost = terrain.cast_ray(above, -DVec3::Y, 200.0).is_none();
@@ -254,7 +255,7 @@ impl Life {
 
     fn strike(&mut self, triangle: TriangleId, place: DVec3, damage: f64) {
         let at = MaterialPoint::on_triangle(triangle, [1.0 / 3.0; 3]);
-        self.giant.hurt(&Wound { place, at, damage });
+        self.giant.hurt(&at, place, damage);
     }
 
     fn noises(&mut self) -> Vec<Noise> {

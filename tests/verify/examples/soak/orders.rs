@@ -1,6 +1,6 @@
 //! Random orders to an arena. Some of them name a fighter or creature that does not exist.
 
-use clamber_climber::Blow;
+use clamber_climber::Knockback;
 use clamber_colossus::{CreatureConfig, Noise};
 use clamber_fight::{Arena, CreatureId, FighterConfig, FighterId, Order, ProjectileId};
 use fastrand::Rng;
@@ -61,7 +61,7 @@ fn order(rng: &mut Rng, arena: &Arena, origin: DVec3) -> Option<Order> {
         },
         7 => Order::Strike {
             fighter,
-            blow: Blow {
+            knockback: Knockback {
                 velocity: vector(rng) * 20.0,
                 damage: 0.3 * rng.f64(),
                 by: None,

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 use crate::MovingPair;
 use crate::exact::Claim;
 use clamber_surface::geometry::{Affine, Capsule, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshError, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, Influence, MeshError, MeshSource};
 use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::surface::{CastOptions, SkinnedSurface, SurfaceError, SweepHit};
 use glam::Vec3;
@@ -55,7 +55,7 @@ impl Stage {
             joint_count: 3,
             ..MeshSource::default()
         };
-        let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
+        let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default())?;
         Ok(Self {
             surface: SkinnedSurface::new(Arc::new(mesh)),
         })
@@ -68,7 +68,8 @@ impl Stage {
     /// [`SurfaceError`] if the triangle is not finite, or larger than a surface may be.
     pub fn sweep(&mut self, pair: &MovingPair, tolerance: f32) -> Result<Answer, SurfaceError> {
         let [start, end] = pair.corners;
-        self.surface.place(&palette(start), Similarity::IDENTITY)?;
+        self.surface
+            .teleport(&palette(start), Similarity::IDENTITY)?;
         self.surface.advance(&palette(end), Similarity::IDENTITY)?;
         let begin = Instant::now();
         let options = CastOptions::MOVING.with_tolerance(tolerance.into());

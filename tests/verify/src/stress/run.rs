@@ -69,7 +69,7 @@ pub fn run(case: &Case, mut times: Option<&mut Times>) -> Seen {
         }
         for surface in [&mut surface, &mut twin] {
             let taken = if tick == 0 {
-                surface.place(&palette, place)
+                surface.teleport(&palette, place)
             } else {
                 surface.advance(&palette, place)
             };
@@ -149,7 +149,7 @@ fn refuse(
     let fault = PaletteError::Matrix(JointId(joint as u32));
     let refusal = Err(SurfaceError::Palette(fault));
     assert_eq!(surface.advance(&broken, place), refusal);
-    assert_eq!(surface.place(&broken, place), refusal);
+    assert_eq!(surface.teleport(&broken, place), refusal);
     let nowhere = Similarity {
         translation: DVec3::new(0.0, f64::NAN, 0.0),
         ..place
@@ -205,7 +205,7 @@ fn work(
     answer: &mut Vec<Found>,
 ) -> usize {
     let posed = fresh
-        .place(before.0, before.1)
+        .teleport(before.0, before.1)
         .and_then(|()| fresh.advance(now.0, now.1));
     assert_eq!(posed, Ok(()));
     answer.clear();

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::JointId;
 use glam::{DVec3, Vec3};
 
@@ -91,7 +91,7 @@ impl Subject {
             joint_count: origins.len(),
             ..MeshSource::default()
         };
-        let (mesh, _) = match ColliderMesh::build(&source, &BuildOptions::default()) {
+        let (mesh, _) = match ColliderMesh::build(&source, &ColliderBuildOptions::default()) {
             Ok(built) => built,
             Err(error) => panic!("{family}: {error}"),
         };

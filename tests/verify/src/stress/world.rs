@@ -57,7 +57,7 @@ pub(super) fn check(
         translation: DVec3::ZERO,
         ..place
     };
-    if let Err(error) = home.place(palette, at_home) {
+    if let Err(error) = home.teleport(palette, at_home) {
         panic!("rejected at the origin: {error}");
     }
     let away = place.translation;

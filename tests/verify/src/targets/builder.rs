@@ -4,8 +4,8 @@
 use std::collections::BTreeSet;
 
 use clamber_surface::mesh::{
-    BuildOptions, BuildReport, ColliderMesh, Cracks, Influence, MeshError, MeshSource, TriangleId,
-    VertexId, Winding,
+    BuildReport, ColliderBuildOptions, ColliderMesh, CrackPolicy, Influence, MeshError, MeshSource,
+    TriangleId, VertexId, Winding,
 };
 use glam::Vec3;
 
@@ -83,7 +83,7 @@ fn check_triangles(
     mesh: &ColliderMesh,
     report: &BuildReport,
     source: &Source,
-    options: BuildOptions,
+    options: ColliderBuildOptions,
 ) {
     assert_eq!(report.vertices, mesh.positions().len());
     assert_eq!(report.welded + report.vertices, source.positions.len());
@@ -108,7 +108,7 @@ fn check_triangles(
 }
 
 /// Checks that a second build of the source, and a build from the mesh itself, give the same mesh.
-fn check_again(mesh: &ColliderMesh, source: &Source, options: &BuildOptions) {
+fn check_again(mesh: &ColliderMesh, source: &Source, options: &ColliderBuildOptions) {
     let again = ColliderMesh::build(&source.source(), options);
     assert!(again.is_ok_and(|(again, _)| again == *mesh));
     if !source.rest_spaces.is_empty() {
@@ -132,8 +132,8 @@ fn check_again(mesh: &ColliderMesh, source: &Source, options: &BuildOptions) {
         rest_spaces: &[],
         joint_count: mesh.joint_count(),
     };
-    let keep = BuildOptions {
-        cracks: Cracks::Report,
+    let keep = ColliderBuildOptions {
+        cracks: CrackPolicy::Report,
         winding: Winding::Keep,
     };
     let again = ColliderMesh::build(&built, &keep);

@@ -1,7 +1,8 @@
 //! Meshes made from bytes. They are small, and as unlike a limb as the contract allows.
 
 use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Cracks, Influence, MeshSource, SurfaceKind, SurfaceTag, Winding,
+    ColliderBuildOptions, ColliderMesh, CrackPolicy, Influence, MeshSource, SurfaceKind,
+    SurfaceTag, Winding,
 };
 use clamber_surface::rig::JointId;
 use glam::Vec3;
@@ -125,9 +126,9 @@ pub(crate) fn built(bytes: &mut Bytes<'_>) -> Option<ColliderMesh> {
     built.ok().map(|(mesh, _)| mesh)
 }
 
-pub(crate) fn options(bytes: &mut Bytes<'_>) -> BuildOptions {
-    BuildOptions {
-        cracks: bytes.pick(&[Cracks::Report, Cracks::Unify]),
+pub(crate) fn options(bytes: &mut Bytes<'_>) -> ColliderBuildOptions {
+    ColliderBuildOptions {
+        cracks: bytes.pick(&[CrackPolicy::Report, CrackPolicy::Unify]),
         winding: bytes.pick(&[Winding::Keep, Winding::Flip]),
     }
 }

@@ -47,7 +47,7 @@ pub fn palettes(data: &[u8]) -> Palettes {
         let before = State::of(&surface);
         let jump = bytes.one_in(4);
         let result = if jump {
-            surface.place(&palette, place)
+            surface.teleport(&palette, place)
         } else {
             surface.advance(&palette, place)
         };

@@ -280,11 +280,11 @@ impl Obstacle for AvianTerrain<'_> {
         self.first_contact(capsule, displacements, ticks(target), meet)
     }
 
-    fn body_of(&self, point: &MaterialPoint) -> u64 {
+    fn rigid_body_id(&self, point: &MaterialPoint) -> u64 {
         point.key
     }
 
-    fn push_response(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
+    fn inverse_effective_mass(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
         let Some(entity) = Entity::try_from_bits(point.key) else {
             return 0.0;
         };

@@ -30,7 +30,7 @@ impl Tick<'_> {
         own: DVec3,
     ) -> Option<NextMode> {
         let config = self.config.ledge?;
-        let has_hands = self.state.stamina > 0.0 && self.state.open_handed == 0.0;
+        let has_hands = self.state.stamina > 0.0 && self.state.grip_cooldown == 0.0;
         if !self.input.grip || !has_hands {
             return None;
         }

@@ -7,7 +7,7 @@ use clamber_world::{
 use glam::DVec3;
 
 use super::*;
-use crate::{Blow, ClimberError, ClimberState, Support};
+use crate::{ClimberError, ClimberState, Knockback, StepRules, Support};
 
 /// An obstacle that returns numbers that are not finite.
 struct Broken;
@@ -34,7 +34,7 @@ impl Obstacle for Broken {
         Some(self.met())
     }
 
-    fn push_response(&self, _: &MaterialPoint, _: DVec3) -> f64 {
+    fn inverse_effective_mass(&self, _: &MaterialPoint, _: DVec3) -> f64 {
         f64::NAN
     }
 
@@ -77,22 +77,23 @@ fn bad_input_is_refused_and_changes_nothing() {
         assert!(climber.step(&IDLE, &obstacles, dt).is_err(), "{dt}");
     }
     let nan = DVec3::new(f64::NAN, 0.0, 0.0);
-    let struck = |velocity, damage| ClimberInput {
-        blow: Some(Blow {
+    for input in [walking(nan), ClimberInput { climb: nan, ..IDLE }] {
+        let refused = climber.step(&input, &obstacles, DT);
+        assert_eq!(refused, Err(ClimberError::NotFinite("input")), "{input:?}");
+    }
+    for (velocity, damage) in [(nan, 0.1), (DVec3::X, f64::INFINITY)] {
+        let knockback = Knockback {
             velocity,
             damage,
             by: None,
-        }),
-        ..IDLE
-    };
-    for input in [
-        walking(nan),
-        ClimberInput { climb: nan, ..IDLE },
-        struck(nan, 0.1),
-        struck(DVec3::X, f64::INFINITY),
-    ] {
-        let refused = climber.step(&input, &obstacles, DT);
-        assert_eq!(refused, Err(ClimberError::NotFinite("input")), "{input:?}");
+        };
+        let rules = StepRules {
+            knockback: Some(knockback),
+            ..StepRules::default()
+        };
+        let refused = climber.step_with(&IDLE, &obstacles, &rules, DT);
+        let expected = ClimberError::NotFinite("knockback");
+        assert_eq!(refused, Err(expected), "{knockback:?}");
     }
     assert_eq!(*climber.state(), before);
 }
@@ -210,7 +211,7 @@ fn states_with_numbers_out_of_range_are_refused() {
         |state| state.stamina = 1.5,
         |state| state.hit_points = -0.1,
         |state| state.hanging.arm = -1.0,
-        |state| state.open_handed = -1e-3,
+        |state| state.grip_cooldown = -1e-3,
         |state| state.heading = DVec3::ZERO,
         |state| state.heading *= 2.0,
     ];

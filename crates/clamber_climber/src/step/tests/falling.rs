@@ -5,7 +5,7 @@ use clamber_surface::surface::SkinnedSurface;
 use glam::{DAffine3, DVec3};
 
 use super::*;
-use crate::{Blow, ClimberState};
+use crate::{ClimberState, Knockback, StepRules};
 
 #[test]
 fn falls_along_the_parabola_and_lands_where_it_touches() {
@@ -164,15 +164,17 @@ fn a_blow_knocks_down_a_sliding_climber() {
     while climber.state().mode != ClimberMode::Sliding {
         step_on(&mut climber, &steep, &IDLE);
     }
-    let struck = ClimberInput {
-        blow: Some(Blow {
-            velocity: DVec3::Y * 4.0,
-            damage: 0.25,
-            by: None,
-        }),
-        ..IDLE
+    let knockback = Knockback {
+        velocity: DVec3::Y * 4.0,
+        damage: 0.25,
+        by: None,
     };
-    let report = step_on(&mut climber, &steep, &struck);
+    let rules = StepRules {
+        knockback: Some(knockback),
+        ..StepRules::default()
+    };
+    let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &steep)];
+    let report = climber.step_with(&IDLE, &obstacles, &rules, DT).unwrap();
     let tumbled = changed(ClimberMode::Sliding, ClimberMode::Tumbling);
     assert!(report.events.contains(&tumbled), "{report:?}");
     assert_eq!(climber.state().hit_points, 0.75);

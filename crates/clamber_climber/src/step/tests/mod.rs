@@ -9,7 +9,7 @@ mod walking;
 use std::sync::Arc;
 
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
@@ -38,7 +38,7 @@ fn patch(corners: &[(f32, f32, f32)], triangles: &[[u32; 3]]) -> SkinnedSurface 
         .map(|&(x, y, z)| Vec3::new(x, y, z))
         .collect();
     let source = MeshSource::rigid(&positions, triangles);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }
 

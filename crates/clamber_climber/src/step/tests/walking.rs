@@ -73,7 +73,7 @@ fn ground_that_ends_or_is_removed_is_left() {
     );
     // The climber rolled around the edge, down to the steepest slope that it stands on, before it left the ground.
     let speed = climber.state().velocity.x;
-    let least = 3.0 * libm::cos(ClimberConfig::walker().ground.stays_on_slope());
+    let least = 3.0 * libm::cos(ClimberConfig::walker().ground.release_slope());
     assert!((least..=3.0).contains(&speed), "keeps its speed: {speed}");
 
     let mut climber = landed(1.0, 0.5, 0.0, &ground);

@@ -1,12 +1,12 @@
 //! Climbers that lie on a light body which another object moves.
 
-use clamber_climber::{Climber, ClimberConfig, ClimberMode};
+use clamber_climber::{Climber, ClimberConfig, ClimberMode, StepRules};
 use clamber_world::HalfSpace;
 use glam::DVec3;
 
 use crate::cases::WORLDS;
 use crate::held::Held;
-use crate::input::{IDLE, struck};
+use crate::input::{IDLE, blow};
 use crate::moving::MovingHalfSpace;
 use crate::numbers::in_world_of_size;
 use crate::scene::list;
@@ -32,9 +32,12 @@ fn who_lies_on_a_plank_in_a_lift_that_speeds_up_goes_with_it() {
                     shifts: [height(tick), height(tick + 1)],
                 };
                 let plank = Held(lift, 5.0);
-                let blow = struck(DVec3::X * (5.0 * size), IDLE);
-                let input = if tick == 5 { blow } else { IDLE };
-                climber.step(&input, &list(&[&plank]), dt).unwrap();
+                let mut rules = StepRules::default();
+                if tick == 5 {
+                    rules.knockback = blow(DVec3::X * (5.0 * size));
+                }
+                let step = climber.step_with(&IDLE, &list(&[&plank]), &rules, dt);
+                step.unwrap();
                 let state = climber.state();
                 if state.mode == ClimberMode::Tumbling {
                     lay += dt;

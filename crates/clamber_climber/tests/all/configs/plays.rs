@@ -1,12 +1,13 @@
 //! The plays of each configuration, at 60 Hz.
 
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepReport,
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, Knockback, StepReport,
+    StepRules,
 };
 use clamber_world::{HalfSpace, Obstacle, TriangleTerrain};
 use glam::{DVec3, Vec3};
 
-use crate::input::{HOLD, IDLE, grip_walk, high_jump, struck, walk};
+use crate::input::{HOLD, IDLE, blow, grip_walk, high_jump, walk};
 use crate::scene::{DT, FUR, list_owned};
 
 /// Ticks a second.
@@ -20,17 +21,29 @@ type Outcome = Result<(), String>;
 struct Run {
     climber: Climber,
     obstacles: Vec<Box<dyn Obstacle>>,
+    /// The blow in the next step.
+    knockback: Option<Knockback>,
 }
 
 impl Run {
     fn new(config: &ClimberConfig, position: DVec3, obstacles: Vec<Box<dyn Obstacle>>) -> Self {
         let climber = Climber::new(*config, position).unwrap();
-        Self { climber, obstacles }
+        Self {
+            climber,
+            obstacles,
+            knockback: None,
+        }
     }
 
     fn step(&mut self, input: &ClimberInput) -> StepReport {
-        let step = self.climber.step(input, &list_owned(&self.obstacles), DT);
-        step.unwrap()
+        let rules = StepRules {
+            knockback: self.knockback.take(),
+            ..StepRules::default()
+        };
+        let obstacles = list_owned(&self.obstacles);
+        self.climber
+            .step_with(input, &obstacles, &rules, DT)
+            .unwrap()
     }
 
     fn mode(&self) -> ClimberMode {
@@ -143,8 +156,8 @@ pub(crate) fn slides_down(config: &ClimberConfig) -> Outcome {
 pub(crate) fn is_knocked_over(config: &ClimberConfig) -> Outcome {
     let mut run = standing(config)?;
     let speed = libm::sqrt(config.gravity.length() * config.body.radius);
-    let blow = struck(DVec3::new(3.0, 1.0, 0.5) * speed, IDLE);
-    run.step(&blow);
+    run.knockback = blow(DVec3::new(3.0, 1.0, 0.5) * speed);
+    run.step(&IDLE);
     run.comes_to_stand()
 }
 

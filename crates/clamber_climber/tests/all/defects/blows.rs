@@ -1,7 +1,7 @@
 //! Blows on a climber that stands or holds on, without tumbling.
 
 use clamber_climber::{
-    Blow, Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput, ClimberMode,
+    Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberMode, Knockback, StepRules,
 };
 use glam::{DVec3, Vec3};
 
@@ -9,19 +9,19 @@ use crate::cases::pairs;
 use crate::defects::common::v;
 use crate::events::{count, is_hurt};
 use crate::input::{HOLD, IDLE, grip_walk};
-use crate::scene::{FUR, STONE, climber, cuboid, tick_among};
+use crate::scene::{DT, FUR, STONE, climber, cuboid, list, tick_among};
 use crate::stage::{Played, Run, Shape, Stage};
 
-/// An input with a blow that does damage.
-fn hurt(velocity: DVec3, input: ClimberInput) -> ClimberInput {
-    let blow = Blow {
+/// Rules with a blow that does damage.
+fn hurt(velocity: DVec3) -> StepRules<'static> {
+    let knockback = Knockback {
         velocity,
         damage: 0.1,
         by: None,
     };
-    ClimberInput {
-        blow: Some(blow),
-        ..input
+    StepRules {
+        knockback: Some(knockback),
+        ..StepRules::default()
     }
 }
 
@@ -39,7 +39,8 @@ fn a_blow_moves_a_climber_on_its_feet() {
     for (hz, speed) in pairs([30.0, 60.0, 240.0], speeds) {
         let stage = Stage::at_rate(Played::Root, hz).with_still(&Shape::floor(100.0));
         let mut run = Run::new(stage, without_tumble(), DVec3::ZERO).settle();
-        let report = run.step(&hurt(v(speed, 0.0, 0.0), IDLE));
+        run.knockback = hurt(v(speed, 0.0, 0.0)).knockback;
+        let report = run.step(&IDLE);
         let told = format!("{speed} m/s at {hz} Hz: {:?}", report.events);
         assert_eq!(count(&report.events, is_hurt), 1, "{told}");
         run.steps((5.0 * hz) as u32, &IDLE);
@@ -71,12 +72,16 @@ fn a_blow_moves_a_climber_on_its_hold() {
             }
             assert_eq!(climber.state().mode, ClimberMode::Holding);
             let from = climber.state().position;
-            let input = hurt(direction * speed, HOLD);
             let mut farthest = 0.0f64;
             let mut events = Vec::new();
             for k in 0..30 {
-                let input = if k == 0 { &input } else { &HOLD };
-                events.extend(tick_among(&mut climber, &[&fur], input).events);
+                let blow = if k == 0 {
+                    hurt(direction * speed)
+                } else {
+                    StepRules::default()
+                };
+                let step = climber.step_with(&HOLD, &list(&[&fur]), &blow, DT);
+                events.extend(step.unwrap().events);
                 farthest = farthest.max((climber.state().position - from).dot(direction));
             }
             let told = format!("{speed} m/s along {direction}: {farthest} m, {events:?}");
@@ -92,7 +97,9 @@ fn a_blow_moves_a_climber_on_its_hold() {
             tick_among(&mut climber, &[&stone], &toward);
         }
         assert_eq!(climber.state().mode, ClimberMode::LedgeHanging);
-        let report = tick_among(&mut climber, &[&stone], &hurt(DVec3::Z * speed, HOLD));
+        let blow = hurt(DVec3::Z * speed);
+        let step = climber.step_with(&HOLD, &list(&[&stone]), &blow, DT);
+        let report = step.unwrap();
         let hangs = climber.state().mode == ClimberMode::LedgeHanging;
         assert_eq!(hangs, speed < 4.0, "{speed}: {:?}", report.events);
     }
@@ -103,14 +110,15 @@ fn damage_outside_0_to_1_is_refused() {
     for damage in [7.0, -1.0, 1.0 + 1e-9, -f64::MIN_POSITIVE] {
         let mut climber = climber(DVec3::ZERO);
         let before = *climber.state();
-        let mut input = hurt(DVec3::X, IDLE);
-        input.blow.as_mut().unwrap().damage = damage;
+        let mut rules = hurt(DVec3::X);
+        rules.knockback.as_mut().unwrap().damage = damage;
         let expected = ClimberError::OutOfRange {
-            name: "blow.damage",
+            name: "knockback.damage",
             range: "from 0 to 1",
             found: damage,
         };
-        assert_eq!(climber.step(&input, &[], 0.1), Err(expected), "{damage}");
+        let stepped = climber.step_with(&IDLE, &[], &rules, 0.1);
+        assert_eq!(stepped, Err(expected), "{damage}");
         assert_eq!(climber.state(), &before, "{damage}");
     }
 }

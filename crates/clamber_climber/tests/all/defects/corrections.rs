@@ -1,12 +1,14 @@
 //! Corrections of position (step-ups, snaps down, mantles and push-outs) do not become velocity.
 
-use clamber_climber::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberObstacle};
+use clamber_climber::{
+    ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberObstacle, Knockback,
+};
 use clamber_world::Obstacle;
 use glam::{DVec3, Vec3};
 
 use crate::cases::{pairs, triples};
 use crate::defects::common::v;
-use crate::input::{IDLE, grip_walk, struck, walk};
+use crate::input::{IDLE, blow, grip_walk, walk};
 use crate::scene::{STONE, climber, cuboid, cuboid_at, list, moved, walker};
 use crate::stage::{Played, Run, Shape, Stage, shifted};
 
@@ -131,9 +133,15 @@ fn stairs_do_not_become_velocity() {
     }
 }
 
-/// The greatest height within a second, with an input in the first tick: above the ground, or above the start without
-/// ground.
-fn rises(run: &mut Run, first: &ClimberInput, keeps_ground: bool) -> f64 {
+/// The greatest height within a second, with an input and a blow in the first tick: above the ground, or above the
+/// start without ground.
+fn rises(
+    run: &mut Run,
+    first: &ClimberInput,
+    knockback: Option<Knockback>,
+    keeps_ground: bool,
+) -> f64 {
+    run.knockback = knockback;
     let from = run.position().y;
     let mut highest = 0.0f64;
     let ticks = (1.0 / run.stage.dt) as u32;
@@ -162,15 +170,15 @@ fn rises(run: &mut Run, first: &ClimberInput, keeps_ground: bool) -> f64 {
 fn a_climber_is_not_thrown_up_right_after_a_step_up() {
     let (mut worst, mut all) = (0.0f64, String::new());
     for (hz, (name, config)) in pairs(RATES, configs()) {
-        for (what, first, keeps_ground) in [
-            ("nothing", IDLE, true),
-            ("lost ground", IDLE, false),
-            ("lost ground while it walks", walk(DVec3::Z), false),
-            ("a blow", struck(v(2.9, 0.0, 0.0), IDLE), true),
-            ("a harder blow", struck(v(3.1, 0.0, 0.0), IDLE), true),
+        for (what, first, knockback, keeps_ground) in [
+            ("nothing", IDLE, None, true),
+            ("lost ground", IDLE, None, false),
+            ("lost ground while it walks", walk(DVec3::Z), None, false),
+            ("a blow", IDLE, blow(v(2.9, 0.0, 0.0)), true),
+            ("a harder blow", IDLE, blow(v(3.1, 0.0, 0.0)), true),
         ] {
             let mut run = stepped_up(hz, config);
-            let risen = rises(&mut run, &first, keeps_ground);
+            let risen = rises(&mut run, &first, knockback, keeps_ground);
             all += &format!("\n{name} at {hz} Hz, {what}: thrown up by {risen} m");
             worst = worst.max(risen);
         }
@@ -195,7 +203,7 @@ fn a_level_blow_right_after_a_step_of_stairs_does_not_throw_the_climber_up() {
                 steps += 1;
                 let mut other = stairs();
                 other.put(state);
-                let risen = rises(&mut other, &struck(v(3.1, 0.0, 0.0), IDLE), true);
+                let risen = rises(&mut other, &IDLE, blow(v(3.1, 0.0, 0.0)), true);
                 if risen > 0.05 {
                     all += &format!("\n{hz} Hz, tick {k} at {}: {risen} m", state.position);
                 }

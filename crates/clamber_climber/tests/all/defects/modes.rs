@@ -21,7 +21,7 @@ impl CustomMode for Charge {
     }
 
     fn step(&self, context: &mut ModeContext<'_, '_>) -> NextMode {
-        context.memory()[0] += 1.0;
+        context.custom_slots()[0] += 1.0;
         NextMode::Change(ClimberMode::Custom(self.id()))
     }
 }
@@ -39,7 +39,7 @@ impl CustomMode for PingPong {
     }
 
     fn step(&self, context: &mut ModeContext<'_, '_>) -> NextMode {
-        context.memory()[0] += 1.0;
+        context.custom_slots()[0] += 1.0;
         NextMode::Change(ClimberMode::Custom(5 - self.0))
     }
 }
@@ -54,7 +54,7 @@ fn a_mode_that_changes_to_itself_stays() {
         let mode = ClimberMode::Custom(1);
         assert_eq!(climber.state().mode, mode);
         // The mode's handler ran once.
-        assert_eq!(climber.state().memory[0], f64::from(tick));
+        assert_eq!(climber.state().custom_slots[0], f64::from(tick));
         let told = ClimberEvent::AlreadyInMode { mode };
         assert!(report.events.contains(&told), "{report:?}");
         assert!(!report.changes_left, "{report:?}");
@@ -69,7 +69,7 @@ fn modes_that_hand_over_to_each_other_end_their_tick() {
         let report = climber.step_with(&IDLE, &[], &rules, DT);
         let report = report.unwrap();
         assert!(report.changes_left, "{report:?}");
-        let ran = climber.state().memory[0];
+        let ran = climber.state().custom_slots[0];
         assert!(
             ran <= 4.0 * f64::from(tick),
             "{ran} handlers in {tick} ticks"

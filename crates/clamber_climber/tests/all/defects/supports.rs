@@ -2,7 +2,7 @@
 //! creature with the same id.
 
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepReport,
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepReport, StepRules,
 };
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::rapier3d::prelude::{
@@ -14,8 +14,8 @@ use glam::{DVec3, Vec3};
 use crate::cases::{pairs, triples};
 use crate::defects::common::{Mute, tick_gripping, v};
 use crate::events::{count, is_attached, is_landed, is_lost_footing};
-use crate::input::{HOLD, IDLE, grip_walk, struck};
-use crate::scene::{DT, FUR, STONE, climber, cuboid, cuboid_at, moved, tick_among};
+use crate::input::{HOLD, IDLE, blow, grip_walk};
+use crate::scene::{DT, FUR, STONE, climber, cuboid, cuboid_at, list, moved, tick_among};
 
 /// The support of a climber on a block of 8 x 6 x 6 m around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -242,17 +242,21 @@ fn events_carry_the_attachment_that_was_lost() {
         for k in 0..600 {
             let held = climber.state().support.map(|support| support.attachment);
             let Some(held) = held else { break };
-            let mut input = on.input();
+            let input = on.input();
+            let mut rules = StepRules::default();
             match way {
                 // The support accelerates down, which throws off a standing climber and tires a holding one.
                 1 => place -= DT * DT * 60.0 * f64::from(k),
-                2..=4 if k == 0 => input = struck(v(0.0, 9.0, 9.0), input),
+                2..=4 if k == 0 => rules.knockback = blow(v(0.0, 9.0, 9.0)),
                 _ => {}
             }
             moved(&mut one, v(0.0, place, 0.0));
             let report = match (way, k) {
                 (0, 3) => tick_among(&mut climber, &[], &input),
-                (2..=4, 0) => tick_among(&mut climber, &[&one], &input),
+                (2..=4, 0) => {
+                    let step = climber.step_with(&input, &list(&[&one]), &rules, DT);
+                    step.unwrap()
+                }
                 _ => on.step(&mut climber, &[&one]),
             };
             for event in &report.events {

@@ -79,7 +79,7 @@ impl Crowd {
     /// A box at a place; `half` are its half lengths.
     pub(crate) fn add_box(&mut self, center: DVec3, half: DVec3) {
         let mut surface = cuboid((half / self.size).as_vec3(), STONE);
-        surface.place(&rest(), self.at(center)).unwrap();
+        surface.teleport(&rest(), self.at(center)).unwrap();
         if self.boxes.is_empty() {
             self.deck = center;
         }

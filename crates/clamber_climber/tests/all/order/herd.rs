@@ -53,7 +53,7 @@ impl Herd {
     pub(crate) fn new() -> Self {
         let mut floor = SkinnedSurface::new(ground());
         let under = Similarity::from_translation(DVec3::Y * -3.0);
-        floor.place(&rest(), under).unwrap();
+        floor.teleport(&rest(), under).unwrap();
         let mut herd = Self {
             skeleton: skeleton(),
             clip: clip(),
@@ -66,7 +66,7 @@ impl Herd {
         for index in 0..CREATURES {
             let palette = herd.palette(0, index);
             herd.creatures[index]
-                .place(&palette, place(0, index))
+                .teleport(&palette, place(0, index))
                 .unwrap();
         }
         herd

@@ -40,7 +40,8 @@ fn steady_ticks_allocate_nothing() {
         let load = scene.add(body(), [0.6; 3], DVec3::Y * 1.2, 5.0);
         scene.add(body(), [1.0; 3], DVec3::new(1.0, 0.51, 0.0), 500.0);
         taken(&mut scene, direction, 60);
-        let told = format!("{setting:?}, {direction}, {}", scene.above(load));
-        assert_eq!(taken(&mut scene, direction, 60), 0, "{told}");
+        let count = taken(&mut scene, direction, 60);
+        let above = scene.above(load);
+        assert_eq!(count, 0, "{setting:?}, {direction}, {above}");
     }
 }

@@ -5,7 +5,7 @@ use clamber_world::rapier3d::prelude::{
     Collider, ColliderBuilder, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, Vector,
 };
 use clamber_world::{
-    BodyPoses, ClimberProxy, Obstacle, ObstacleId, ProxyHit, RapierTerrain, apply_push,
+    BodyPoses, ClimberProxy, Obstacle, ObstacleId, ProxyImpulse, RapierTerrain, apply_push,
 };
 use glam::DVec3;
 
@@ -25,7 +25,7 @@ pub(crate) struct Scene {
     pub(crate) before: BodyPoses,
     pub(crate) proxy: Option<ClimberProxy>,
     /// The hit on the climber in the last tick.
-    pub(crate) hit: Option<ProxyHit>,
+    pub(crate) hit: Option<ProxyImpulse>,
     /// Velocity of all bodies and of the climber at the start.
     pub(crate) frame: DVec3,
 }
@@ -139,22 +139,22 @@ impl Scene {
             let (bodies, colliders) = (&mut world.bodies, &mut world.colliders);
             proxy.after_step(&self.before, bodies, colliders, &world.narrow_phase, dt)
         });
-        let blow = self
+        let knockback = self
             .hit
-            .and_then(|hit| self.climber.blow_of(hit.impulse, Some(WORLD)));
-        let input = ClimberInput { blow, ..*input };
+            .and_then(|hit| self.climber.knockback_of(hit.impulse, Some(WORLD)));
         let own = self.proxy.as_ref().map(ClimberProxy::collider);
         let seen = |handle, _: &Collider| Some(handle) != own;
         let terrain = RapierTerrain::of_world(&self.world, &self.before).with_filter(&seen);
         let rules = StepRules {
             air_velocity: self.frame,
+            knockback,
             ..StepRules::default()
         };
         let mut obstacles: Vec<(ObstacleId, &dyn Obstacle)> = vec![(WORLD, &terrain)];
         obstacles.extend(more);
         let report = self
             .climber
-            .step_with(&input, &obstacles, &rules, dt)
+            .step_with(input, &obstacles, &rules, dt)
             .unwrap();
         for push in &report.pushes {
             let world = &mut self.world;

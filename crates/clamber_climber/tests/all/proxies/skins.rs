@@ -31,7 +31,7 @@ impl Ride {
             tick: 0,
         };
         let at = ride.at();
-        ride.creature.place(&rest(), at).unwrap();
+        ride.creature.teleport(&rest(), at).unwrap();
         ride
     }
 

@@ -1,13 +1,13 @@
 //! A climber that holds on to a body, and does not tear it about, however light the body is.
 
-use clamber_climber::{Blow, ClimberConfig, ClimberInput, ClimberMode};
+use clamber_climber::{ClimberConfig, ClimberMode, StepRules};
 use clamber_world::rapier3d::prelude::{
     RigidBodyBuilder, RigidBodyHandle, SphericalJointBuilder, Vector,
 };
 use glam::DVec3;
 
 use crate::cases::{pairs, triples};
-use crate::input::HOLD;
+use crate::input::{HOLD, blow};
 use crate::pushing::scene::{FUR, MASS, Scene, cuboid};
 use crate::stage::tireless;
 
@@ -118,13 +118,13 @@ fn hanging_from_a_body_makes_no_energy() {
         let (mut lowest, mut all, mut seen) = (f64::INFINITY, None, 0);
         for tick in 0..(if roped { 6.0 } else { 1.0 } * rate) as u32 {
             let struck = blows && tick % rate as u32 == rate as u32 / 2;
-            let blow = struck.then_some(Blow {
-                velocity: DVec3::Z * (1.5 * size),
-                damage: 0.0,
-                by: None,
-            });
+            let mut rules = StepRules::default();
+            if struck {
+                rules.knockback = blow(DVec3::Z * (1.5 * size));
+            }
             let before = scene.climber.state().velocity / size;
-            scene.tick(&ClimberInput { blow, ..HOLD });
+            scene.apply();
+            scene.step_by(&HOLD, &rules);
             match scene.climber.state().mode {
                 ClimberMode::Hanging => {}
                 _ if seen == 0 => continue,

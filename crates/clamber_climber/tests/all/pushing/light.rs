@@ -1,6 +1,8 @@
 //! Bodies that are light: hit in rows, stood on, jumped off, walked on and fallen on.
 
-use clamber_climber::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, TumbleConfig};
+use clamber_climber::{
+    ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepRules, TumbleConfig,
+};
 use clamber_world::rapier3d::prelude::{
     ColliderBuilder, FixedJointBuilder, RigidBodyBuilder, RigidBodyHandle, Vector,
 };
@@ -8,7 +10,7 @@ use glam::DVec3;
 
 use crate::cases::{pairs, triples};
 use crate::events::{count, is_tumbled};
-use crate::input::{IDLE, high_jump, struck, walk};
+use crate::input::{IDLE, blow, high_jump, walk};
 use crate::pushing::scene::{MASS, Scene, boxed};
 
 /// Sizes of the world, and rates, hertz.
@@ -320,9 +322,14 @@ fn who_tumbles_on_a_cart_keeps_the_momentum_of_both() {
             let told =
                 format!("size {size}, {rate} Hz, {mass} kg at {cart_speed} m/s, blow {speed}");
             scene.assert_standing(&told);
-            let blow = DVec3::X * (speed * size);
-            let had = scene.momenta(&[cart]).x + blow.x * MASS;
-            let report = scene.step_and_apply(&struck(blow, IDLE));
+            let change = DVec3::X * (speed * size);
+            let had = scene.momenta(&[cart]).x + change.x * MASS;
+            let rules = StepRules {
+                knockback: blow(change),
+                ..StepRules::default()
+            };
+            let report = scene.step_by(&IDLE, &rules);
+            scene.apply();
             let fell = report.events.iter().any(is_tumbled);
             assert!(fell, "{told}: {:?}", report.events);
             for tick in 0..(4.0 * rate) as u32 {

@@ -1,4 +1,4 @@
-use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, StepReport};
+use clamber_climber::{Climber, ClimberConfig, ClimberInput, Knockback, StepReport, StepRules};
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId};
 use clamber_surface::rig::{Clip, Playback, Skeleton};
@@ -25,6 +25,8 @@ pub(crate) struct Scene {
     config: ClimberConfig,
     start: DVec3,
     input: ClimberInput,
+    /// The blow in this tick.
+    knockback: Option<Knockback>,
 }
 
 impl Scene {
@@ -48,7 +50,7 @@ impl Scene {
         }
         let mut floor = SkinnedSurface::new(ground());
         let under = Similarity::from_translation(DVec3::Y * -3.0);
-        floor.place(&rest(), under).unwrap();
+        floor.teleport(&rest(), under).unwrap();
         let mut block = SkinnedSurface::new(ground());
         let steep = Similarity {
             rotation: rotation_from_axis_angle(DVec3::Z, 0.3 * (rng.f64() - 0.5)),
@@ -59,7 +61,7 @@ impl Scene {
                 4.0 * rng.f64() - 2.0,
             ),
         };
-        block.place(&rest(), steep).unwrap();
+        block.teleport(&rest(), steep).unwrap();
         let mut config = match rng.u32(0..4) {
             0 => ClimberConfig::walker(),
             _ => ClimberConfig::colossus_climber(),
@@ -81,6 +83,7 @@ impl Scene {
             config,
             start: DVec3::new(f64::from(JOINTS) * 0.9, 5.0, 0.2),
             input: IDLE,
+            knockback: None,
         };
         if scene.rng.bool() {
             // The climber starts beside the table, about to catch its ledge.
@@ -113,7 +116,7 @@ impl Scene {
             let pose = self.clip.sample(&rest, time, Playback::Loop).unwrap();
             let palette = self.skeleton.palette(&pose).unwrap();
             if is_placed {
-                tube.place(&palette, place).unwrap();
+                tube.teleport(&palette, place).unwrap();
             } else {
                 tube.advance(&palette, place).unwrap();
             }
@@ -157,7 +160,7 @@ impl Scene {
             self.input.grip = rng.u32(0..3) > 0;
         }
         self.input.jump = rng.u32(0..90) == 0;
-        self.input.blow = (rng.u32(0..400) == 0).then(|| Blow {
+        self.knockback = (rng.u32(0..400) == 0).then(|| Knockback {
             by: None,
             velocity: walk * 6.0,
             damage: rng.f64() * 0.1,
@@ -180,7 +183,12 @@ impl Scene {
     }
 
     pub(crate) fn step(&self, climber: &mut Climber, input: &ClimberInput) -> StepReport {
-        climber.step(input, &self.obstacles(), DT).unwrap()
+        let rules = StepRules {
+            knockback: self.knockback,
+            ..StepRules::default()
+        };
+        let step = climber.step_with(input, &self.obstacles(), &rules, DT);
+        step.unwrap()
     }
 
     /// Depth of an obstacle in the climber's core, metres.

@@ -285,14 +285,19 @@ fn play(scene: &Scene, played: Played, rate: f64, is_mirrored: bool, angle: f64)
         (last, last_way) = (run.position(), way);
     }
     let (position, facing) = (map(scene.ends.0), map(scene.ends.1));
-    let off = run.position().distance(position);
+    let place = run.position();
+    let off = place.distance(position);
     // The way is longer where the ball rolls around an edge or moves up a step.
     let allowed = if scene.rests {
         SHIMMY * dt + 0.15
     } else {
         0.25
     };
-    within!(off, allowed, "{case}: ends {off} m from {position}");
+    within!(
+        off,
+        allowed,
+        "{case}: ends at {place}, {off} m from {position}"
+    );
     if facing != DVec3::ZERO {
         let heading = run.state().heading;
         within!(heading.distance(facing), 1e-3, "{case}: faces {heading}");

@@ -95,7 +95,7 @@ impl Obstacle for Running<'_> {
             position,
             previous_position: position - self.velocity * dt,
             velocity: self.velocity,
-            placed: false,
+            was_teleported: false,
             frame: Some(DQuat::IDENTITY),
             turn: DQuat::IDENTITY,
             area_ratio: 1.0,

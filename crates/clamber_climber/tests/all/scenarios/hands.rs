@@ -6,7 +6,7 @@ use clamber_world::SurfaceKind;
 use glam::{DAffine3, DVec3};
 
 use crate::events::{count, is_turned_corner};
-use crate::input::{HOLD, IDLE, grip_climb, grip_walk, struck};
+use crate::input::{HOLD, IDLE, blow, grip_climb, grip_walk};
 use crate::stage::{Run, Shape, Skin, Stage, every, shifted, within};
 
 /// A block of 8 by 6 by 6 m around the origin.
@@ -99,7 +99,8 @@ pub(crate) fn a_knocked_down_climber_bounces_slides_and_gets_up() {
     every(0.0, |played| {
         let stage = Stage::new(played).with_still(&Shape::floor(60.0));
         let mut run = at(stage, DVec3::Y * 3.0);
-        run.step(&struck(DVec3::new(6.0, 1.0, 0.0), IDLE));
+        run.knockback = blow(DVec3::new(6.0, 1.0, 0.0));
+        run.step(&IDLE);
         assert_eq!(run.mode(), Tumbling);
         run.steps(300, &IDLE);
         assert_eq!(run.mode(), Standing, "{played:?}: {}", run.position());

@@ -39,6 +39,7 @@ pub(crate) fn drift(trace: &Trace, start: DVec3, motion: impl Fn(f64) -> Similar
 }
 
 /// Rides a platform without input. The climber stands all the time, and stays where it stood on the platform.
+#[track_caller]
 fn rides(
     mut run: Run,
     ticks: u32,

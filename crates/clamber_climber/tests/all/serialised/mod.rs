@@ -3,8 +3,8 @@
 //! This needs `float_roundtrip` of serde_json, which reads numbers as the nearest float.
 
 use clamber_climber::{
-    Blow, Climber, ClimberConfig, ClimberInput, ClimberMode, CustomMode, ModeContext, NextMode,
-    StepRules,
+    Climber, ClimberConfig, ClimberInput, ClimberMode, CustomMode, Knockback, ModeContext,
+    NextMode, StepRules,
 };
 use clamber_world::ObstacleId;
 use glam::DVec3;
@@ -82,7 +82,7 @@ fn inputs_keep_every_bit() {
             let mut one = || size * (rng.f64() - 0.5);
             DVec3::new(one(), one(), one())
         };
-        let blow = Blow {
+        let blow = Knockback {
             velocity: point(20.0),
             damage: point(1.0).x,
             by: (round % 2 == 0).then_some(ObstacleId(u64::MAX - round)),
@@ -94,20 +94,17 @@ fn inputs_keep_every_bit() {
             jump_held: round % 7 == 0,
             grip: round % 3 == 0,
             crouch: round % 4 == 0,
-            blow: (round % 5 == 0).then_some(blow),
             actions: (round as u32).wrapping_mul(0x9e37_79b9),
             aim: point(1e3),
         };
-        let read = copy(&input);
-        let bits = |input: &ClimberInput| {
-            let blow = input.blow.unwrap_or_default();
+        let read = (copy(&input), copy(&blow));
+        let bits = |(input, blow): &(ClimberInput, Knockback)| {
             let vectors = [input.walk, input.climb, blow.velocity, input.aim];
             let bits = vectors.map(|v| v.to_array().map(f64::to_bits));
             let buttons = (input.jump, input.jump_held, input.grip, input.actions);
             (bits, blow.damage.to_bits(), blow.by, buttons)
         };
-        assert_eq!(bits(&read), bits(&input), "{input:?}");
-        assert_eq!(read.blow.is_some(), input.blow.is_some());
+        assert_eq!(bits(&read), bits(&(input, blow)), "{input:?} {blow:?}");
     }
 }
 
@@ -120,13 +117,13 @@ impl CustomMode for Rise {
     }
 
     fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool {
-        context.memory()[7] = 1.0;
+        context.custom_slots()[7] = 1.0;
         context.input().actions == 1 << 31
     }
 
     fn step(&self, context: &mut ModeContext<'_, '_>) -> NextMode {
-        context.memory()[7] -= context.dt();
-        if context.memory()[7] <= 0.0 {
+        context.custom_slots()[7] -= context.dt();
+        if context.custom_slots()[7] <= 0.0 {
             return context.let_go();
         }
         context.move_by(context.input().aim);

@@ -1,11 +1,12 @@
 //! Plays a scene at a size: lengths are scaled by the size, speeds and times by its square root.
 
-use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, ClimberMode, ClimberState};
+use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode, ClimberState, StepRules};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceTag;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DQuat, DVec3};
 
+use crate::input::blow;
 use crate::moving::MovingHalfSpace;
 use crate::scene::{STONE, cuboid, rest};
 
@@ -103,7 +104,7 @@ pub(crate) fn play(scene: &Scene, config: ClimberConfig, size: f64, rate: f64) -
             rotation: DQuat::IDENTITY,
             scale: size,
         };
-        surface.place(&rest(), place).unwrap();
+        surface.teleport(&rest(), place).unwrap();
         surface
     });
     let (point, normal, tag) = scene.half_space;
@@ -131,17 +132,17 @@ pub(crate) fn play(scene: &Scene, config: ClimberConfig, size: f64, rate: f64) -
         if let Some(surface) = &surface {
             obstacles.push((ObstacleId(1), surface));
         }
-        let blow = scene.blow.filter(|(when, _)| tick_of(*when) == tick);
+        let struck = scene.blow.filter(|(when, _)| tick_of(*when) == tick);
         let input = ClimberInput {
             jump: scene.jump.is_some_and(|when| tick_of(when) == tick),
-            blow: blow.map(|(_, velocity)| Blow {
-                velocity: velocity * root,
-                damage: 0.0,
-                by: None,
-            }),
             ..(scene.input)(time)
         };
-        let report = climber.step(&input, &obstacles, dt).unwrap();
+        let rules = StepRules {
+            knockback: struck.and_then(|(_, velocity)| blow(velocity * root)),
+            ..StepRules::default()
+        };
+        let step = climber.step_with(&input, &obstacles, &rules, dt);
+        let report = step.unwrap();
         assert!(
             report.is_clear,
             "{} at size {size}, tick {tick}",

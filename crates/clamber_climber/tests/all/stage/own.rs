@@ -278,7 +278,7 @@ impl Obstacle for Own {
             position,
             previous_position,
             velocity: (position - previous_position) / dt,
-            placed: position == previous_position,
+            was_teleported: position == previous_position,
             frame,
             turn: turn.map_or(DQuat::IDENTITY, |(now, then)| {
                 (now * then.conjugate()).normalize()

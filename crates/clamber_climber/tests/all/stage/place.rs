@@ -211,8 +211,8 @@ impl Obstacle for Elsewhere<'_> {
         Some(self.hit(hit, &then.inverse()))
     }
 
-    fn push_response(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
-        self.inner.push_response(point, direction) / self.there.scale
+    fn inverse_effective_mass(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
+        self.inner.inverse_effective_mass(point, direction) / self.there.scale
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {

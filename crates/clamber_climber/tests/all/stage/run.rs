@@ -2,7 +2,7 @@
 
 use clamber_climber::{
     Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput, ClimberMode, ClimberObstacle,
-    ClimberState, ContactQuery, ContactRule, StepReport, StepRules,
+    ClimberState, ContactQuery, ContactRule, Knockback, StepReport, StepRules,
 };
 use clamber_world::{Obstacle, ObstacleId, WorldCapsule};
 use glam::DVec3;
@@ -48,6 +48,8 @@ pub(crate) struct Run {
     friend: Option<Climber>,
     /// The climber's state in the scenario's units and frame.
     state: ClimberState,
+    /// The blow in the next step, in the scenario's units.
+    pub(crate) knockback: Option<Knockback>,
 }
 
 /// A rule for contacts that lives longer than a tick.
@@ -71,6 +73,7 @@ impl Run {
             rule: None,
             id: None,
             friend: None,
+            knockback: None,
         };
         run.put(ClimberState {
             position,
@@ -126,7 +129,6 @@ impl Run {
         self.stage.advance();
         let (climber, dt) = (&mut self.climber, self.stage.dt);
         let there = self.stage.place().inverse();
-        let input = in_world(input, self.stage.place().scale);
         let report = self.stage.obstacles(|obstacles| {
             let around: Vec<(ObstacleId, Box<dyn Obstacle + '_>)> = obstacles
                 .iter()
@@ -137,19 +139,24 @@ impl Run {
                 let inner = inner.as_ref();
                 seen.push((*id, Elsewhere { inner, there }));
             }
-            climber.step(&input, &listed(&seen), dt).unwrap()
+            climber.step(input, &listed(&seen), dt).unwrap()
         });
         self.note(report)
     }
 
     fn step_only(&mut self, input: &ClimberInput) -> StepReport {
         let (climber, dt) = (&mut self.climber, self.stage.dt);
-        let input = in_world(input, self.stage.place().scale);
+        let scale = self.stage.place().scale;
+        let knockback = self.knockback.take().map(|knockback| Knockback {
+            velocity: knockback.velocity * scale,
+            ..knockback
+        });
         // The air moves with the frame.
         let rules = StepRules {
             contact: self.rule.as_deref().map(|rule| rule as _),
             id: self.id,
             air_velocity: self.stage.place().velocity,
+            knockback,
             ..StepRules::default()
         };
         let friend = &mut self.friend;
@@ -162,7 +169,7 @@ impl Run {
                 friend.step(&IDLE, &obstacles, dt).unwrap();
             }
             obstacles.extend(body.as_ref().map(|body| (FRIEND, body as &dyn Obstacle)));
-            let stepped = climber.step_with(&input, &obstacles, &rules, dt);
+            let stepped = climber.step_with(input, &obstacles, &rules, dt);
             stepped.unwrap()
         });
         self.note(report)
@@ -281,15 +288,6 @@ impl Drop for Run {
         trace.reach = self.stage.reach();
         remember(trace);
     }
-}
-
-/// Scales an input of a scenario for a scaled climber.
-fn in_world(input: &ClimberInput, scale: f64) -> ClimberInput {
-    let blow = input.blow.map(|blow| clamber_climber::Blow {
-        velocity: blow.velocity * scale,
-        ..blow
-    });
-    ClimberInput { blow, ..*input }
 }
 
 impl Trace {

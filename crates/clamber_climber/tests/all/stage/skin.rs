@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag,
+    ColliderBuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag,
 };
 use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::surface::SkinnedSurface;
@@ -67,7 +67,7 @@ impl Skin {
 
     pub(super) fn place(&mut self, time: f64, scale: f64, origin: DVec3) {
         let (palette, root) = self.at(time, scale, origin);
-        self.surface.place(&palette, root).unwrap();
+        self.surface.teleport(&palette, root).unwrap();
     }
 
     /// Poses the surface for the next tick. Returns its extent from its root, and the displacement of its root.
@@ -133,7 +133,7 @@ fn build(shape: &Shape, tag: SurfaceTag, weights: &[Vec<f64>]) -> Arc<ColliderMe
         ..MeshSource::default()
     };
     Arc::new(
-        ColliderMesh::build(&source, &BuildOptions::default())
+        ColliderMesh::build(&source, &ColliderBuildOptions::default())
             .unwrap()
             .0,
     )

@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use super::line::Line;
 use crate::brain::{Beam, StateId};
-use crate::creature::report::{ActiveBeam, Blow};
+use crate::creature::report::{ActiveBeam, StrikeHit};
 use crate::creature::{Creature, Surroundings};
 
 /// Distance that the end of a beam moves between two checks, metres, in addition to the beam's radius.
@@ -71,7 +71,7 @@ impl Creature {
                 continue;
             };
             self.mark_struck(person.id);
-            self.report.blows.push(Blow {
+            self.report.blows.push(StrikeHit {
                 person: person.id,
                 velocity: ray.direction * file.throw,
                 damage: file.damage,

@@ -7,7 +7,7 @@ use super::line::Line;
 use super::wave::{self, WaveState};
 use super::{MOST_AT_A_TIME, moved_off, reachable, shot_of};
 use crate::brain::{Shot, StateId, WaveOf};
-use crate::creature::report::{Blow, CreatureEvent};
+use crate::creature::report::{CreatureEvent, StrikeHit};
 use crate::creature::{Creature, Surroundings};
 
 /// Upper bound for the speed of a shot, metres a second: a little above the fastest possible shot, which has 1,000 m/s
@@ -121,7 +121,7 @@ impl Creature {
                 let place = line.at(share);
                 let mut struck = Vec::new();
                 if file.strikes() {
-                    self.report.blows.push(Blow {
+                    self.report.blows.push(StrikeHit {
                         person: person.id,
                         velocity: line.way.normalize_or_zero() * file.throw,
                         damage: file.damage,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{MOST_AT_A_TIME, moved_off, wave_of};
 use crate::brain::{StateId, Wave, WaveOf};
-use crate::creature::report::{Blow, CreatureEvent};
+use crate::creature::report::{CreatureEvent, StrikeHit};
 use crate::creature::state::is_far;
 use crate::creature::{Creature, Person, Surroundings};
 
@@ -196,7 +196,7 @@ impl Creature {
             if wave.of == WaveOf::Limb && wave.attack == self.state.ranged.attack {
                 self.state.striking.mark_struck(person.id);
             }
-            self.report.blows.push(Blow {
+            self.report.blows.push(StrikeHit {
                 person: person.id,
                 velocity: direction * (file.throw * share),
                 damage: file.damage * share,

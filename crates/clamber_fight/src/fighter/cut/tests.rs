@@ -95,7 +95,7 @@ impl Phase {
             }
             let (mut seconds, mut least) = (0.0, f64::INFINITY);
             while seconds <= self.sword.cut {
-                surface.place(palette, self.world(seconds)).unwrap();
+                surface.teleport(palette, self.world(seconds)).unwrap();
                 let blade = self.blade(seconds);
                 let capsule = WorldCapsule {
                     ends: [blade.hilt, blade.tip],
@@ -128,7 +128,7 @@ impl Phase {
         let (mut struck, mut all) = (Vec::new(), Vec::new());
         // The cut begins at any time within a tick.
         let mut begin = -offset * dt;
-        surface.place(palette, self.world(begin)).unwrap();
+        surface.teleport(palette, self.world(begin)).unwrap();
         while begin < self.sword.cut {
             let end = begin + dt;
             surface.advance(palette, self.world(end)).unwrap();

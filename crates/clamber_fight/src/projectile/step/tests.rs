@@ -85,7 +85,7 @@ impl Shot {
         let fastest = self.velocity.length() + 10.0 + self.moves.length() + self.spin.abs() * 2.0;
         let (mut seconds, mut least) = (0.0, f64::INFINITY);
         while seconds <= FLIES {
-            skin.place(palette, self.world(seconds)).unwrap();
+            skin.teleport(palette, self.world(seconds)).unwrap();
             let tip = self.from + self.velocity * seconds + GRAVITY * (0.5 * seconds * seconds);
             let near = skin.in_world().closest_point(tip, 1e3).unwrap();
             let gap = near.distance - radius;
@@ -107,7 +107,7 @@ fn fly(
     rate: f64,
 ) -> (Option<f64>, Projectile) {
     let (dt, mut arrow, mut stuck) = (1.0 / rate, shot.arrow(), None);
-    skin.place(palette, shot.world(0.0)).unwrap();
+    skin.teleport(palette, shot.world(0.0)).unwrap();
     let ticks = (FLIES * rate).ceil() as u32;
     for tick in 0..ticks {
         skin.advance(palette, shot.world(f64::from(tick + 1) * dt))
@@ -200,7 +200,7 @@ fn deepest(shot: &Shot, skin: &mut SkinnedSurface, palette: &Palette, from: f64)
     let mut most = (from, 0.0);
     for step in 0..200 {
         let seconds = from + f64::from(step) * 1e-4;
-        skin.place(palette, shot.world(seconds)).unwrap();
+        skin.teleport(palette, shot.world(seconds)).unwrap();
         let tip = shot.from + shot.velocity * seconds + GRAVITY * (0.5 * seconds * seconds);
         let near = skin.in_world().closest_point(tip, 1e3).unwrap();
         let inside = skin.in_world().is_inside(tip);

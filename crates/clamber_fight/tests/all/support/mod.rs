@@ -14,7 +14,7 @@ use clamber_colossus::{Brain, CreatureConfig, CreatureKind};
 use clamber_fight::{Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId, Order};
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshSource, Rig, SurfaceKind, SurfaceTag,
+    ColliderBuildOptions, ColliderMesh, Influence, MeshSource, Rig, SurfaceKind, SurfaceTag,
 };
 use clamber_surface::rig::{
     Channel, Clip, Interpolation, Joint, JointId, Keyframes, Skeleton, Transform, WeakPoint,
@@ -107,7 +107,7 @@ impl Slab {
             tags: &tags,
             ..MeshSource::rigid(&positions, &triangles)
         };
-        let mesh = ColliderMesh::build(&source, &BuildOptions::default())
+        let mesh = ColliderMesh::build(&source, &ColliderBuildOptions::default())
             .unwrap()
             .0;
         let root = Joint {
@@ -218,7 +218,7 @@ impl Wall {
             joint_count: joints as usize,
             ..MeshSource::default()
         };
-        let mesh = ColliderMesh::build(&source, &BuildOptions::default())
+        let mesh = ColliderMesh::build(&source, &ColliderBuildOptions::default())
             .unwrap()
             .0;
         let all = (0..joints).map(|index| Joint {

@@ -136,7 +136,7 @@ impl<'a> Theatre<'a> {
                 .advance(&self.palette, self.graph.config.world_from_model)?;
         } else {
             self.surface
-                .place(&self.palette, self.graph.config.world_from_model)?;
+                .teleport(&self.palette, self.graph.config.world_from_model)?;
         }
         Ok(())
     }

@@ -13,7 +13,7 @@ use clamber_climber::ClimberConfig;
 use clamber_navigation::{ClimbGraph, ClimbReport, GraphConfig};
 use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshSource, Rig, SurfaceKind, SurfaceTag,
+    ColliderBuildOptions, ColliderMesh, Influence, MeshSource, Rig, SurfaceKind, SurfaceTag,
 };
 use clamber_surface::rig::{Clip, Joint, JointId, Skeleton, Transform, WeakPoint};
 use clamber_surface::surface::SkinnedSurface;
@@ -105,7 +105,7 @@ impl Body {
             ..MeshSource::default()
         };
         Arc::new(
-            ColliderMesh::build(&source, &BuildOptions::default())
+            ColliderMesh::build(&source, &ColliderBuildOptions::default())
                 .unwrap()
                 .0,
         )
@@ -116,7 +116,7 @@ impl Body {
         let skeleton = skeleton();
         let palette = skeleton.palette(&skeleton.rest_pose()).unwrap();
         let mut surface = SkinnedSurface::new(self.mesh());
-        surface.place(&palette, Similarity::IDENTITY).unwrap();
+        surface.teleport(&palette, Similarity::IDENTITY).unwrap();
         surface
     }
 

@@ -40,7 +40,7 @@ impl Square {
     }
 
     fn build(&self) -> Result<(ColliderMesh, BuildReport), MeshError> {
-        ColliderMesh::build(&self.source(), &BuildOptions::default())
+        ColliderMesh::build(&self.source(), &ColliderBuildOptions::default())
     }
 }
 
@@ -77,7 +77,7 @@ fn a_joint_that_moves_all_corners_a_little_can_move_the_triangle_most() {
         joint_count: 4,
         ..square.source()
     };
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default()).unwrap();
     assert_eq!(mesh.parts()[0].joint, JointId(0));
 }
 
@@ -92,10 +92,10 @@ fn vertices_of_different_rest_spaces_never_coincide() {
         rest_spaces: &[0, 0, 0, 1, 1, 1],
         ..square.source()
     };
-    for cracks in [Cracks::Report, Cracks::Unify] {
-        let options = BuildOptions {
+    for cracks in [CrackPolicy::Report, CrackPolicy::Unify] {
+        let options = ColliderBuildOptions {
             cracks,
-            ..BuildOptions::default()
+            ..ColliderBuildOptions::default()
         };
         let report = ColliderMesh::build(&source, &options).unwrap().1;
         assert_eq!((report.cracks, report.welded), (0, 0), "{cracks:?}");
@@ -104,7 +104,7 @@ fn vertices_of_different_rest_spaces_never_coincide() {
         rest_spaces: &[0; 5],
         ..square.source()
     };
-    let error = ColliderMesh::build(&short, &BuildOptions::default()).unwrap_err();
+    let error = ColliderMesh::build(&short, &ColliderBuildOptions::default()).unwrap_err();
     let expected = MeshError::RestSpaceCount {
         expected: 6,
         found: 5,
@@ -128,9 +128,9 @@ fn coincident_vertices_with_other_influences_are_reported_or_unified() {
     let (mesh, report) = given.build().unwrap();
     assert_eq!((report.vertices, report.cracks), (5, 1));
     assert_eq!(mesh.max_influences(), 2);
-    let options = BuildOptions {
-        cracks: Cracks::Unify,
-        ..BuildOptions::default()
+    let options = ColliderBuildOptions {
+        cracks: CrackPolicy::Unify,
+        ..ColliderBuildOptions::default()
     };
     let (mesh, report) = ColliderMesh::build(&given.source(), &options).unwrap();
     assert_eq!((report.vertices, report.cracks), (4, 0));
@@ -155,9 +155,9 @@ fn degenerate_and_duplicate_triangles_are_dropped_and_tags_follow() {
 
 #[test]
 fn winding_can_be_flipped() {
-    let options = BuildOptions {
+    let options = ColliderBuildOptions {
         winding: Winding::Flip,
-        ..BuildOptions::default()
+        ..ColliderBuildOptions::default()
     };
     let (mesh, _) = ColliderMesh::build(&square().source(), &options).unwrap();
     assert_eq!(mesh.triangles()[0], [VertexId(0), VertexId(2), VertexId(1)]);
@@ -186,11 +186,14 @@ fn one_influence_is_that_of_every_vertex() {
         influences: &[influence(0, 1.0); 4],
         ..rigid
     };
-    let build = |source| ColliderMesh::build(source, &BuildOptions::default()).unwrap();
+    let build = |source| ColliderMesh::build(source, &ColliderBuildOptions::default()).unwrap();
     let ((rigid, report), each) = (build(&rigid), build(&each));
     assert_eq!((rigid.id(), &report), (each.0.id(), &each.1));
     assert_eq!(report.max_influences, 1);
-    let none = ColliderMesh::build(&MeshSource::rigid(&[], &[]), &BuildOptions::default());
+    let none = ColliderMesh::build(
+        &MeshSource::rigid(&[], &[]),
+        &ColliderBuildOptions::default(),
+    );
     assert!(
         matches!(none, Err(MeshError::InfluenceCount { .. })),
         "{none:?}"
@@ -263,7 +266,7 @@ fn a_mesh_has_at_most_as_many_joints_as_gltf_can_name() {
         joint_count,
         ..given.source()
     };
-    let options = BuildOptions::default();
+    let options = ColliderBuildOptions::default();
     let (mesh, _) = ColliderMesh::build(&of(65_536), &options).unwrap();
     let joints = mesh.influences(VertexId(1)).map(|(joint, _)| joint);
     assert!(joints.eq([JointId(65_535)]));

@@ -9,7 +9,7 @@ use glam::Vec3;
 use crate::geometry::Ray;
 use crate::geometry::triangle::ShearedRay;
 use crate::measure::BruteForce;
-use crate::mesh::{BuildOptions, ColliderMesh, MeshSource, TriangleId};
+use crate::mesh::{ColliderBuildOptions, ColliderMesh, MeshSource, TriangleId};
 use crate::surface::SkinnedSurface;
 use crate::surface::agreement::assert_same_answers;
 use crate::testing::{direction, point, separate};
@@ -17,7 +17,7 @@ use crate::testing::{direction, point, separate};
 /// Triangles of one joint at rest.
 fn still(positions: &[Vec3], triangles: &[[u32; 3]]) -> Option<SkinnedSurface> {
     let source = MeshSource::rigid(positions, triangles);
-    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).ok()?;
+    let (mesh, _) = ColliderMesh::build(&source, &ColliderBuildOptions::default()).ok()?;
     Some(SkinnedSurface::new(Arc::new(mesh)))
 }
 

@@ -94,7 +94,7 @@ fn a_limb_at_any_speed_touches_a_resting_shape_at_the_right_time() {
 fn step(surface: &mut SkinnedSurface, palette: &Palette, root: DVec3, first: bool) {
     let world = Similarity::from_translation(root);
     if first {
-        surface.place(palette, world).unwrap();
+        surface.teleport(palette, world).unwrap();
     } else {
         surface.advance(palette, world).unwrap();
     }
@@ -303,7 +303,7 @@ fn a_mirrored_tube_keeps_outward_normals() {
     let mut mirror = Affine::IDENTITY;
     mirror.rows[2][2] = -1.0;
     let palette = Palette::from_matrices([mirror; 4]);
-    surface.place(&palette, Similarity::IDENTITY).unwrap();
+    surface.teleport(&palette, Similarity::IDENTITY).unwrap();
     let sphere = ball(Vec3::new(1.5, 3.0, 0.0), 0.25);
     let hit = cast(&surface, &sphere, Vec3::NEG_Y * 4.0).unwrap();
     assert!(hit.hit.normal.y > 0.99, "{hit:?}");

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3, Vec3};
 
 use crate::geometry::{Affine, Ray, rotation_from_axis_angle, widen};
-use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use crate::mesh::{ColliderBuildOptions, ColliderMesh, Influence, MeshSource};
 use crate::rig::Palette;
 use crate::surface::SkinnedSurface;
 use crate::testing::{self, advance, cases, influence, point, positions_of};
@@ -27,7 +27,7 @@ fn sphere(center: Vec3) -> Arc<ColliderMesh> {
         joint_count: 2,
         ..MeshSource::default()
     };
-    let (mesh, report) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    let (mesh, report) = ColliderMesh::build(&source, &ColliderBuildOptions::default()).unwrap();
     assert_eq!((report.welded, report.degenerate_triangles), (0, 0));
     Arc::new(mesh)
 }

@@ -32,7 +32,7 @@ fn random(count: usize, low: f64, high: f64) -> Vec<f64> {
 }
 
 fn jumps(ticks: &[(f64, PoseMotion)]) -> usize {
-    let placed = |(_, motion): &&(f64, PoseMotion)| *motion == PoseMotion::Placed;
+    let placed = |(_, motion): &&(f64, PoseMotion)| *motion == PoseMotion::Teleported;
     ticks.iter().filter(placed).count()
 }
 
@@ -68,7 +68,7 @@ fn a_long_interval_is_jumped_and_does_not_change_the_lag() {
         );
         for (moved, motion) in &ticks[100..] {
             assert!(
-                *motion == PoseMotion::Placed || (moved - 1.0).abs() <= 0.01,
+                *motion == PoseMotion::Teleported || (moved - 1.0).abs() <= 0.01,
                 "{hitch} ms: {moved}"
             );
         }

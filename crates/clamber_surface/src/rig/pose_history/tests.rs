@@ -42,20 +42,20 @@ fn a_pose_stays_until_its_last_time_and_then_moves_to_the_next() {
 
 #[test]
 fn after_the_last_pose_before_a_teleport_the_creature_is_at_its_end() {
-    let mut history = history(PoseMotion::Placed);
+    let mut history = history(PoseMotion::Teleported);
     assert_eq!(seen(&mut history, 1.0), (0.0, PoseMotion::Moved));
     for time in [1.1, 1.9, 2.0] {
         let found = seen(&mut history, time);
-        assert_eq!(found, (2.0, PoseMotion::Placed), "at {time} s");
+        assert_eq!(found, (2.0, PoseMotion::Teleported), "at {time} s");
     }
     assert_eq!(seen(&mut history, 3.5), (3.5, PoseMotion::Moved));
 }
 
 #[test]
 fn a_teleport_that_is_passed_between_two_ticks_is_none_of_motion() {
-    let mut history = history(PoseMotion::Placed);
+    let mut history = history(PoseMotion::Teleported);
     assert_eq!(seen(&mut history, 0.5), (0.0, PoseMotion::Moved));
-    assert_eq!(seen(&mut history, 3.5), (3.5, PoseMotion::Placed));
+    assert_eq!(seen(&mut history, 3.5), (3.5, PoseMotion::Teleported));
 }
 
 #[test]

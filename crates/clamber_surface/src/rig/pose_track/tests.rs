@@ -78,7 +78,7 @@ fn error(rhythm: &Rhythm, rate: f64, size: f64, frame: f64) -> (f64, u32) {
         if now > 0.5 {
             match motion {
                 PoseMotion::Moved => worst = worst.max((velocity - true_velocity).length()),
-                PoseMotion::Placed => placed += 1,
+                PoseMotion::Teleported => placed += 1,
             }
         }
     }

@@ -158,9 +158,7 @@ fn an_edit_does_not_change_other_surfaces_that_share_the_mesh() {
     one.edit(|_| ());
     assert!(Arc::ptr_eq(one.mesh(), other.mesh()));
 
-    let tag = SurfaceTag {
-        ..SurfaceTag::default()
-    };
+    let tag = SurfaceTag::default().with_user(1);
     one.edit(|edit| edit.set_tag(TriangleId(0), tag)).unwrap();
     assert!(!Arc::ptr_eq(one.mesh(), other.mesh()));
     let own = Arc::as_ptr(one.mesh());

@@ -146,7 +146,7 @@ fn same_is_reported_only_if_no_position_changed_in_either_pose() {
     let mut update = |surface: &SkinnedSurface| patch.update(surface, low, high, 1.0);
     assert_eq!(update(&surface), PatchChange::Rebuilt);
     assert_eq!(update(&surface), PatchChange::Same);
-    surface.place(&poses[0], root).unwrap();
+    surface.teleport(&poses[0], root).unwrap();
     update(&surface);
     surface.advance(&poses[0], root).unwrap();
     assert_eq!(update(&surface), PatchChange::Same);
@@ -158,7 +158,7 @@ fn same_is_reported_only_if_no_position_changed_in_either_pose() {
     surface.advance(&poses[1], root).unwrap();
     assert_eq!(update(&surface), PatchChange::Same);
     // The surface stands still in another pose.
-    surface.place(&poses[0], root).unwrap();
+    surface.teleport(&poses[0], root).unwrap();
     assert_eq!(update(&surface), PatchChange::Moved);
 }
 

@@ -142,7 +142,7 @@ fn previous_positions_are_those_of_the_last_tick_if_the_root_rests() {
     let mut surface = surface();
     let world = Similarity::from_translation(DVec3::new(1e5, 3.0, 0.0));
     let bent = |angle: f64| bend(JOINTS, DVec3::Z, angle);
-    surface.place(&bent(0.1), world).unwrap();
+    surface.teleport(&bent(0.1), world).unwrap();
     let before = positions_of(&surface);
     surface.advance(&bent(0.2), world).unwrap();
     assert_previous(&surface, &before, "far out");
@@ -170,7 +170,7 @@ fn previous_positions_follow_a_moving_root_far_from_the_origin() {
         scale: 4.0,
         translation: DVec3::new(1e5 + x, 20.0, -7e4),
     };
-    surface.place(&palette, world(0.3, 0.0)).unwrap();
+    surface.teleport(&palette, world(0.3, 0.0)).unwrap();
     let vertices = (0..40).map(VertexId);
     let at = |v| {
         let position = surface.in_model().position(v).unwrap();
@@ -192,7 +192,9 @@ fn place_leaves_no_motion() {
     let mut surface = surface();
     advance(&mut surface, &bend(JOINTS, DVec3::Z, 0.3));
     let far = Similarity::from_translation(DVec3::splat(1e4));
-    surface.place(&bend(JOINTS, DVec3::Z, -0.3), far).unwrap();
+    surface
+        .teleport(&bend(JOINTS, DVec3::Z, -0.3), far)
+        .unwrap();
     assert_previous(&surface, &positions_of(&surface), "placed");
 }
 
@@ -202,7 +204,7 @@ fn a_sleeping_surface_answers_and_does_not_move() {
     let bent = |angle: f64| bend(JOINTS, DVec3::Z, angle);
     let world = |x: f64| Similarity::from_translation(DVec3::new(x, 0.0, 0.0));
     for surface in [&mut surface, &mut awake] {
-        surface.place(&bent(0.1), world(0.0)).unwrap();
+        surface.teleport(&bent(0.1), world(0.0)).unwrap();
         surface.advance(&bent(0.3), world(2.0)).unwrap();
     }
     assert_ne!(
@@ -220,7 +222,7 @@ fn a_sleeping_surface_answers_and_does_not_move() {
     assert!(hit.is_some());
     assert_eq!(hit, awake.in_model().cast_ray(&ray, 10.0));
     // Placed far away: no motion.
-    surface.place(&bent(0.9), world(50.0)).unwrap();
+    surface.teleport(&bent(0.9), world(50.0)).unwrap();
     let v = VertexId(3);
     assert_eq!(
         surface.in_model().previous_position(v),
@@ -256,8 +258,8 @@ fn the_bounding_ball_holds_all_skin_over_the_tick() {
 fn a_creature_far_away_answers_like_one_at_the_origin() {
     let palette = bend(JOINTS, DVec3::Z, 0.7);
     let (mut near, mut far) = (surface(), surface());
-    near.place(&palette, Similarity::IDENTITY).unwrap();
-    far.place(&palette, Similarity::from_translation(DVec3::splat(1e5)))
+    near.teleport(&palette, Similarity::IDENTITY).unwrap();
+    far.teleport(&palette, Similarity::from_translation(DVec3::splat(1e5)))
         .unwrap();
     let ray = Ray::new(Vec3::new(1.0, 4.0, 0.2), -Vec3::Y).unwrap();
     let hit = near.in_model().cast_ray(&ray, 10.0);
@@ -288,7 +290,7 @@ fn bad_palettes_and_placements_change_nothing() {
     let before = positions_of(&surface);
     let refused = |surface: &mut SkinnedSurface, palette: &Palette, world: Similarity| {
         let by_advance = surface.advance(palette, world).unwrap_err();
-        assert_eq!(surface.place(palette, world).unwrap_err(), by_advance);
+        assert_eq!(surface.teleport(palette, world).unwrap_err(), by_advance);
         by_advance
     };
     let short = bend(JOINTS - 1, DVec3::Z, 0.2);

@@ -129,7 +129,7 @@ impl Stage {
             };
             match *does {
                 Does::Moves(place) => creature.surface.advance(&rest(), to(place)).unwrap(),
-                Does::IsPlaced(place) => creature.surface.place(&rest(), to(place)).unwrap(),
+                Does::IsPlaced(place) => creature.surface.teleport(&rest(), to(place)).unwrap(),
                 Does::IsAway => {}
             }
         }

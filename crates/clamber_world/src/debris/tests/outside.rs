@@ -54,7 +54,7 @@ fn a_body_is_outside_if_its_winding_number_is_0_and_it_touches_nothing() {
     ]);
     let origin = DVec3::new(3e4, 0.0, -1e4);
     let turned = at(origin + DVec3::Y, DVec3::Z, 0.4);
-    surface.place(&rest(), turned).unwrap();
+    surface.teleport(&rest(), turned).unwrap();
     let mut positions = Vec::new();
     surface.skin_all(&mut positions);
     let mut rng = fastrand::Rng::with_seed(4);
@@ -90,7 +90,7 @@ fn a_body_under_an_open_roof_is_outside() {
     let positions = corners.map(|[x, z]| Vec3::new(x, 2.0, z));
     for [a, b, c, d] in [[0, 3, 2, 1], [0, 1, 2, 3]] {
         let mut roof = rigid(&positions, &[[a, b, c], [a, c, d]]);
-        roof.place(&rest(), Similarity::IDENTITY).unwrap();
+        roof.teleport(&rest(), Similarity::IDENTITY).unwrap();
         for height in [0.0, 1.0, 3.0] {
             let pose = Pose::from_translation(Vec3::new(0.3, height, 0.2));
             let (core, hull) = &ball(0.3);

@@ -58,7 +58,7 @@ fn moved(surface: &mut SkinnedSurface, place: DVec3) {
 
 fn placed(surface: &mut SkinnedSurface, place: DVec3) {
     let root = Similarity::from_translation(place);
-    surface.place(&rest(), root).unwrap();
+    surface.teleport(&rest(), root).unwrap();
 }
 
 /// Two hands clap at a speed on a rock in mid-air, and leave it less room than it needs. The hand with index `first` is
@@ -164,7 +164,7 @@ fn a_creature_that_was_placed_elsewhere_holds_rocks_there() {
                     Way::Root => (rest(), root),
                     _ => (lifted(1, |_| f64::from(up)), Similarity::IDENTITY),
                 };
-                two.place(&palette, root).unwrap();
+                two.teleport(&palette, root).unwrap();
                 let mut rock = Rock::new(Vector::new(0.2, 1.31, 0.3));
                 for _ in 0..calm {
                     moved(&mut one, DVec3::ZERO);
@@ -173,7 +173,7 @@ fn a_creature_that_was_placed_elsewhere_holds_rocks_there() {
                 assert_eq!(rock.world.bodies[rock.body].is_sleeping(), calm == 400);
                 for tick in 0..200 {
                     if tick == 0 {
-                        one.place(&palette, root)
+                        one.teleport(&palette, root)
                     } else {
                         one.advance(&palette, root)
                     }

@@ -38,7 +38,7 @@ fn stamp(shape: &ColliderBuilder, start: Pose, speed: f64, tilt: f64, plate: boo
         let height = sole(f64::from(tick) * DT, speed) + f64::from(HALF.y);
         at(DVec3::Y * height, DVec3::Z, tilt)
     };
-    scene.surface.place(&still, foot(0)).unwrap();
+    scene.surface.teleport(&still, foot(0)).unwrap();
     for tick in 0..660 {
         scene.tick(&still, foot(tick));
         let place = scene.world.bodies[rock].translation();
@@ -57,7 +57,7 @@ fn stamp(shape: &ColliderBuilder, start: Pose, speed: f64, tilt: f64, plate: boo
     // The foot collides with the rock again.
     let from = f64::from(place.x - HALF.x) - 1.0;
     let beside = |x: f64| at(DVec3::new(x, 1.1, f64::from(place.z)), DVec3::Y, 0.0);
-    scene.surface.place(&still, beside(from)).unwrap();
+    scene.surface.teleport(&still, beside(from)).unwrap();
     for tick in 1..=120 {
         let x = from + 2.0 * DT * f64::from(tick);
         scene.tick(&still, beside(x));

@@ -34,7 +34,7 @@ fn nothing_passes_through_an_arm_that_sweeps_at_up_to_60_metres_a_second() {
         // The bodies have landed when the arm comes.
         let wait = 60;
         let start = -3.0;
-        scene.surface.place(&rest(), place(start)).unwrap();
+        scene.surface.teleport(&rest(), place(start)).unwrap();
         let ticks = (12.0 / (speed * DT)) as u32;
         for tick in 0..wait + ticks {
             let x = start + speed * DT * f64::from(tick.saturating_sub(wait));
@@ -65,7 +65,7 @@ fn a_body_that_is_put_back_leaves_at_least_as_fast_as_the_skin() {
             scene.world.gravity = Vector::ZERO;
             let (body, _) = scene.drop(shape, Vector::new(2.0, 0.0, 0.2));
             let place = |x: f64| at(DVec3::new(x, 0.0, 0.0), DVec3::Y, 0.0);
-            scene.surface.place(&rest(), place(-1.0)).unwrap();
+            scene.surface.teleport(&rest(), place(-1.0)).unwrap();
             for tick in 1..20 {
                 let x = -1.0 + speed * DT * f64::from(tick);
                 let report = scene.tick(&rest(), place(x));
@@ -127,7 +127,7 @@ fn a_stacked_wall_stands_until_the_arm_comes() {
     }
     // The arm is so low that nothing passes under it.
     let place = |x: f64| at(DVec3::new(x, 0.55, 0.0), DVec3::Y, 0.0);
-    scene.surface.place(&rest(), place(-4.0)).unwrap();
+    scene.surface.teleport(&rest(), place(-4.0)).unwrap();
     for _ in 0..120 {
         scene.tick(&rest(), place(-4.0));
     }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{ColliderHandle, ColliderSet, ContactPair, NarrowPhase};
 
-use super::{ClimberProxy, ProxyHit};
+use super::{ClimberProxy, ProxyImpulse};
 use crate::rapier::BodyPoses;
 use crate::rapier::push::point_response;
 use crate::rapier::terrain::{key_of, pose_of};
@@ -21,7 +21,7 @@ impl ClimberProxy {
         colliders: &mut ColliderSet,
         narrow_phase: &NarrowPhase,
         dt: f64,
-    ) -> Option<ProxyHit> {
+    ) -> Option<ProxyImpulse> {
         let mut found = std::mem::take(&mut self.found);
         found.clear();
         for pair in narrow_phase.contact_pairs_with(self.collider) {
@@ -88,7 +88,7 @@ impl ClimberProxy {
         (before, dt): (&BodyPoses, f64),
         bodies: &mut RigidBodySet,
         colliders: &ColliderSet,
-        hit: &mut Option<(f64, ProxyHit)>,
+        hit: &mut Option<(f64, ProxyImpulse)>,
     ) -> Option<()> {
         let normal = impact.normal()?;
         let point = impact.point();
@@ -120,7 +120,7 @@ impl ClimberProxy {
         }
         if let Some(impulse) = share.climber {
             let local = pose_of(colliders.get(collider)?.position()).inverse_transform(point);
-            let this = ProxyHit {
+            let this = ProxyImpulse {
                 impulse,
                 material: MaterialPoint {
                     key: key_of(collider),
@@ -133,7 +133,7 @@ impl ClimberProxy {
                 Some((most, other)) => {
                     let impulse = this.impulse + other.impulse;
                     let hardest = if hardness > most { this } else { other };
-                    (most.max(hardness), ProxyHit { impulse, ..hardest })
+                    (most.max(hardness), ProxyImpulse { impulse, ..hardest })
                 }
                 None => (hardness, this),
             });

@@ -105,7 +105,7 @@ pub struct ClimberProxy {
 /// The impact on a climber in a step of rapier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct ProxyHit {
+pub struct ProxyImpulse {
     /// The impulse that the climber gets, newton seconds, in world space; the sum, if several bodies struck it.
     pub impulse: DVec3,
     /// The point of rapier's world that struck the climber hardest.
@@ -210,17 +210,17 @@ impl ClimberProxy {
         colliders: &ColliderSet,
         joints: &mut ImpulseJointSet,
     ) {
-        let body_of = |material: &MaterialPoint| {
+        let rigid_body_id = |material: &MaterialPoint| {
             let collider = colliders.get(RapierTerrain::collider_of(material))?;
             let handle = collider.parent()?;
             let body = bodies.get(handle).filter(|body| body.is_dynamic())?;
             Some((handle, body))
         };
         self.wanted.clear();
-        let support = self.body.support.as_ref().and_then(body_of);
+        let support = self.body.support.as_ref().and_then(rigid_body_id);
         self.wanted.extend(support.map(|(handle, _)| handle));
         for touch in touched {
-            let Some((handle, body)) = body_of(&touch.material) else {
+            let Some((handle, body)) = rigid_body_id(&touch.material) else {
                 continue;
             };
             let velocity = velocity_at(body, touch.position - self.origin);
@@ -252,7 +252,7 @@ impl ClimberProxy {
 
     /// Shares the impacts of rapier's last step by mass: gives back to each body the impulse that the climber does not
     /// take, and puts bodies that entered the climber back to where they first touched it. Returns the impact on the
-    /// climber, for `Climber::blow_of`; `None` if no body struck it.
+    /// climber, for `Climber::knockback_of`; `None` if no body struck it.
     ///
     /// `before` holds the bodies as they were recorded right before the step. `dt` is the length of the tick, seconds.
     pub fn after_step(
@@ -262,7 +262,7 @@ impl ClimberProxy {
         colliders: &mut ColliderSet,
         narrow_phase: &NarrowPhase,
         dt: f64,
-    ) -> Option<ProxyHit> {
+    ) -> Option<ProxyImpulse> {
         let hit = self.take_impacts(before, bodies, colliders, narrow_phase, dt);
         self.clamp(before, bodies, colliders, dt);
         hit

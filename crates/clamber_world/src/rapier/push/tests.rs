@@ -37,7 +37,7 @@ fn direction(rng: &mut fastrand::Rng) -> DVec3 {
 /// The speed that a contact's point gains along a direction, for each N s.
 fn response(world: &PhysicsWorld, contact: &crate::Contact, along: DVec3) -> f64 {
     let terrain = RapierTerrain::of_world(world, &NO_POSES);
-    terrain.push_response(&contact.material, along)
+    terrain.inverse_effective_mass(&contact.material, along)
 }
 
 fn push(world: &mut PhysicsWorld, contact: &crate::Contact, impulse: DVec3) {

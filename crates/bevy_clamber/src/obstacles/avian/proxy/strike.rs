@@ -143,7 +143,7 @@ pub(super) fn strike(
         else {
             continue;
         };
-        if let Some(blow) = body.climber().blow_of(impulse, None) {
+        if let Some(blow) = body.climber().knockback_of(impulse, None) {
             input.strike(ClimberBlow {
                 velocity: blow.velocity.as_vec3(),
                 damage: blow.damage as f32,

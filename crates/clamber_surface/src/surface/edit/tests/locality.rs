@@ -144,9 +144,7 @@ fn a_change_of_tag_touches_no_cluster() {
     touch_everything(&surface);
     let mesh = ColliderMesh::clone(surface.mesh());
     let before = surface.diagnostics();
-    let tag = SurfaceTag {
-        ..SurfaceTag::default()
-    };
+    let tag = SurfaceTag::default().with_user(1);
     surface
         .edit(|edit| edit.set_tag(TriangleId(7), tag))
         .unwrap();

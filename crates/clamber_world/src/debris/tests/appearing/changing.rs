@@ -227,13 +227,13 @@ fn a_limb_that_is_posed_around_a_rock_does_not_keep_it() {
             let mut scene = Scene::new(slab(Vec3::new(8.0, 1.0, 2.0), 0.5, 8));
             scene.ground(-1.0);
             let (rock, _) = scene.drop(ColliderBuilder::ball(0.3), Vector::new(6.8, 1.31, 0.2));
-            scene.surface.place(&palette(0.0), root).unwrap();
+            scene.surface.teleport(&palette(0.0), root).unwrap();
             for _ in 0..60 {
                 scene.tick(&palette(0.0), root);
             }
             // The last quarter jumps up around it.
             let up = 1.5 - low;
-            scene.surface.place(&palette(up), root).unwrap();
+            scene.surface.teleport(&palette(up), root).unwrap();
             let case = format!("up by {up} m, moved {moved_after}");
             let mut found = 0;
             for tick in 0..120 {

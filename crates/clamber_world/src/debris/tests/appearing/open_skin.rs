@@ -59,7 +59,10 @@ fn a_rock_on_open_skin_stays_on_it_whatever_side_that_is() {
                 for tick in 0..400 {
                     forget(&mut scene);
                     if tick % 5 == 0 {
-                        scene.surface.place(&rest(), Similarity::IDENTITY).unwrap();
+                        scene
+                            .surface
+                            .teleport(&rest(), Similarity::IDENTITY)
+                            .unwrap();
                     }
                     let report = scene.tick(&rest(), Similarity::IDENTITY);
                     assert_eq!(report.enclosed, 0, "{case}, tick {tick}");
@@ -153,11 +156,11 @@ fn rocks_are_looked_at_only_when_skin_may_have_appeared_around_them() {
         let origin = DVec3::new(3e4, 0.0, -2e5);
         if tick == 0 {
             scene.debris = scene.debris.clone().with_origin(origin);
-            scene.surface.place(&palette, root).unwrap();
+            scene.surface.teleport(&palette, root).unwrap();
         }
         if tick == 120 {
             // Placed and advanced before debris sees it: it moved within the tick, but not from where it was.
-            scene.surface.place(&palette, root).unwrap();
+            scene.surface.teleport(&palette, root).unwrap();
         }
         scene.tick(&palette, root);
         let jumped = scene.debris.seen.iter().any(|(_, seen)| seen.jumped);

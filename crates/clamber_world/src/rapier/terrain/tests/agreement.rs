@@ -52,7 +52,7 @@ impl Both {
             scale: 1.0,
             translation: origin + place.translation.as_dvec3(),
         });
-        surface.place(&rest(), roots[0]).unwrap();
+        surface.teleport(&rest(), roots[0]).unwrap();
         surface.advance(&rest(), roots[1]).unwrap();
         let mut world = PhysicsWorld::default();
         let body = RigidBodyBuilder::kinematic_position_based().pose(places[0]);

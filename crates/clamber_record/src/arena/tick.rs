@@ -1,20 +1,26 @@
+//! The copy of an arena's tick that is made on the game's thread, and the messages that are made from it.
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
+use std::sync::Arc;
 
-use clamber_fight::{Blade, CreatureId, FighterId, ProjectilePlace};
+use clamber_climber::{ClimberConfig, ClimberInput, ClimberState};
+use clamber_colossus::{ActiveBeam, ActiveShot, ActiveWave, Creature, CreatureEvent};
+use clamber_fight::{Arena, Blade, CreatureId, FighterId, Order, ProjectilePlace};
+use clamber_surface::geometry::Affine;
+use clamber_surface::mesh::ColliderMesh;
+use clamber_world::{Obstacle, ObstacleId};
 use foxglove::messages::{ArrowPrimitive, PointCloud, SceneEntity, SceneUpdate, SpherePrimitive};
 use glam::{DQuat, DVec3};
 
 use super::ArenaInfo;
 use super::recording::LARGEST_TICK;
-use super::taken::{ArenaView, TakenArena, TakenCreature, TakenFighter};
-use crate::messages::{ArenaTick, Brain};
-use crate::output::Channel;
+use crate::messages::{ArenaTick, Brain, Mirror};
+use crate::output::{Channel, Output};
 use crate::views::{
-    ATTACKS, PROJECTILES, Scene, color, deletion, entity, frame_of_climber, from_z_to, left_out,
-    no_skin, pose, vector, z_up,
+    ATTACKS, FigureJoints, PROJECTILES, Scene, TakenFigure, brain, color, deletion, entity,
+    frame_of_climber, from_z_to, left_out, no_skin, pose, vector, z_up,
 };
-use crate::writing::{EncodeTick, Sheet, Writing};
 use crate::{OfArena, RecordError, RecordingKind, topics};
 
 /// Length of an arrow as it is drawn, metres.
@@ -23,6 +29,134 @@ const ARROW: f64 = 0.8;
 /// Largest number of creatures whose brains and skins are written for people to look at: each takes two of a file's
 /// 65,535 channels.
 const MOST_SEEN: usize = 10_000;
+
+/// A copy of an arena's tick.
+#[derive(Debug)]
+pub struct TakenArena {
+    pub(crate) message: ArenaTick,
+    /// Creatures, fighters and projectiles; `None` if views are not due.
+    pub(crate) view: Option<ArenaView>,
+}
+
+/// Everything in an arena that viewers draw.
+#[derive(Debug)]
+pub(crate) struct ArenaView {
+    pub(crate) creatures: Vec<TakenCreature>,
+    pub(crate) fighters: Vec<TakenFighter>,
+    pub(crate) projectiles: Vec<ProjectilePlace>,
+}
+
+#[derive(Debug)]
+pub(crate) struct TakenCreature {
+    pub(crate) id: CreatureId,
+    pub(crate) figure: TakenFigure,
+    pub(crate) brain: Brain,
+    pub(crate) skin: Option<(Arc<ColliderMesh>, Vec<Affine>)>,
+    pub(crate) shots: Vec<ActiveShot>,
+    pub(crate) waves: Vec<ActiveWave>,
+    pub(crate) beam: Option<ActiveBeam>,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct TakenFighter {
+    pub(crate) id: FighterId,
+    pub(crate) config: ClimberConfig,
+    pub(crate) state: ClimberState,
+    pub(crate) blade: Option<Blade>,
+}
+
+impl TakenArena {
+    /// Copies a tick without its views.
+    pub(super) fn new(
+        arena: &Arena,
+        (inputs, orders): (&[ClimberInput], &[Order]),
+    ) -> Result<Self, RecordError> {
+        let parts = arena.part_fingerprints();
+        let orders = match orders {
+            [] => Vec::new(),
+            orders => Order::to_bytes(orders)?,
+        };
+        let fighters = arena.fighters().iter();
+        Ok(Self {
+            message: ArenaTick {
+                tick: arena.tick(),
+                inputs: inputs.iter().map(Mirror::of).collect(),
+                fingerprint: arena.fingerprint(),
+                parts: parts.into_iter().map(|(_, part)| part).collect(),
+                creatures: arena.creatures().map(|(id, _)| id.0).collect(),
+                fighters: fighters.map(|fighter| fighter.id().0).collect(),
+                orders: orders.into(),
+            },
+            view: None,
+        })
+    }
+}
+
+impl ArenaView {
+    pub(super) fn new(
+        arena: &Arena,
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+        joints: &BTreeMap<CreatureId, Arc<FigureJoints>>,
+        has_skin: bool,
+    ) -> Self {
+        let creatures = arena.creatures().filter_map(|(id, creature)| {
+            let joints = joints.get(&id)?;
+            Some(TakenCreature::new((id, creature), joints, has_skin))
+        });
+        let fighters = arena.fighters().iter().map(|fighter| TakenFighter {
+            id: fighter.id(),
+            config: fighter.config().climber,
+            state: *fighter.climber().state(),
+            blade: fighter.blade(),
+        });
+        let projectiles = arena.projectiles().iter();
+        Self {
+            creatures: creatures.collect(),
+            fighters: fighters.collect(),
+            projectiles: projectiles
+                .filter_map(|projectile| arena.place(projectile, terrain))
+                .collect(),
+        }
+    }
+}
+
+impl TakenCreature {
+    fn new(
+        (id, creature): (CreatureId, &Creature),
+        joints: &Arc<FigureJoints>,
+        with_skin: bool,
+    ) -> Self {
+        let (surface, palette) = (creature.surface(), creature.palette());
+        Self {
+            id,
+            figure: TakenFigure::new(Arc::clone(joints), palette, *surface.world_from_model()),
+            brain: brain(creature),
+            shots: creature.shots().collect(),
+            waves: creature.waves().chain(sudden_waves(creature)).collect(),
+            beam: creature.report().beam,
+            skin: with_skin.then(|| (Arc::clone(surface.mesh()), palette.matrices().to_vec())),
+        }
+    }
+}
+
+/// Waves that began in this tick and reached their whole radius at once: they are not among [`Creature::waves`].
+fn sudden_waves(creature: &Creature) -> impl Iterator<Item = ActiveWave> + '_ {
+    let begun = creature.report().events.iter();
+    let begun = begun.filter_map(|event| match event {
+        CreatureEvent::Wave {
+            state,
+            place,
+            radius,
+        } => Some(ActiveWave {
+            state: *state,
+            place: *place,
+            reach: *radius,
+            radius: *radius,
+        }),
+        _ => None,
+    });
+    begun.filter(|wave| !creature.waves().any(|one| one.place == wave.place))
+}
 
 /// Encodes ticks of an arena.
 pub(super) struct ArenaEncoder {
@@ -43,27 +177,27 @@ impl ArenaEncoder {
         out: W,
         info: &ArenaInfo,
         skin_points: usize,
-    ) -> Result<Writing<Self, W>, RecordError> {
+    ) -> Result<(Self, Output<W>), RecordError> {
         let metadata = (&OfArena::TOPICS, info.to_metadata(), info.settings.clone());
-        let mut sheet = Sheet::new(out, info.tick_seconds, metadata, skin_points)?;
+        let mut output = Output::new(out, info.tick_seconds, metadata, skin_points)?;
         let encoder = Self {
-            tick: sheet.output.channel::<ArenaTick>(topics::ARENA)?,
+            tick: output.channel::<ArenaTick>(topics::ARENA, None)?,
             creatures: BTreeMap::new(),
             drawn: BTreeMap::new(),
             fighters: BTreeMap::new(),
             info: info.clone(),
             has_told: false,
         };
-        Ok(Writing::new(encoder, sheet))
+        Ok((encoder, output))
     }
 
     /// Writes the transforms and the scene.
     fn scene<W: Write>(
         &mut self,
-        now: u64,
         view: &ArenaView,
-        sheet: &mut Sheet<W>,
+        output: &mut Output<W>,
     ) -> Result<(), RecordError> {
+        let now = output.now;
         let mut transforms = vec![z_up(now)];
         for creature in &view.creatures {
             transforms.extend(creature.figure.frames(now));
@@ -81,41 +215,40 @@ impl ArenaEncoder {
             transforms.push(frame_of_climber(now, name, &fighter.state));
             entities.push(body(now, name, scene, fighter));
         }
-        sheet.transforms(transforms)?;
+        output.transforms(transforms)?;
         entities.push(arrows(now, &view.projectiles));
         entities.push(attacks(now, &view.creatures));
         let scene = SceneUpdate {
             deletions,
             entities,
         };
-        sheet.output.send(sheet.scene, &scene)
+        output.send(output.scene, &scene)
     }
 
     /// Writes the brains and the skins.
     fn creatures<W: Write>(
         &mut self,
-        now: u64,
         creatures: Vec<TakenCreature>,
-        sheet: &mut Sheet<W>,
+        output: &mut Output<W>,
     ) -> Result<(), RecordError> {
         let here: BTreeSet<CreatureId> = creatures.iter().map(|creature| creature.id).collect();
         for (id, frame) in self.drawn.extract_if(.., |id, _| !here.contains(id)) {
             if let Some((_, skin)) = self.creatures.get(&id) {
-                sheet.output.send(*skin, &no_skin(now, &frame))?;
+                output.send(*skin, &no_skin(output.now, &frame))?;
             }
         }
         for creature in creatures {
-            let Some((brain, skin)) = self.channels(creature.id, sheet)? else {
+            let Some((brain, skin)) = self.channels(creature.id, output)? else {
                 continue;
             };
-            sheet.output.send(brain, &creature.brain)?;
+            output.send(brain, &creature.brain)?;
             if let Some((mesh, matrices)) = &creature.skin {
                 let figure = &creature.figure;
                 let name = &figure.joints.figure;
                 let frame = (name.as_str(), figure.world_from_model.scale);
-                let points = sheet.skin(now, frame, (mesh, matrices))?;
+                let points = output.skin(frame, (mesh, matrices))?;
                 self.drawn.insert(creature.id, name.clone());
-                sheet.output.send(skin, &points)?;
+                output.send(skin, &points)?;
             }
         }
         Ok(())
@@ -125,44 +258,38 @@ impl ArenaEncoder {
     fn channels<W: Write>(
         &mut self,
         creature: CreatureId,
-        sheet: &mut Sheet<W>,
+        output: &mut Output<W>,
     ) -> Result<Option<(Channel, Channel)>, RecordError> {
         if let Some(known) = self.creatures.get(&creature) {
             return Ok(Some(*known));
         }
         if self.creatures.len() >= MOST_SEEN {
             if !std::mem::replace(&mut self.has_told, true) {
-                sheet.log(left_out("brain and skin of further creatures"))?;
+                output.log(left_out("brain and skin of further creatures"))?;
             }
             return Ok(None);
         }
-        let [brain, skin] =
-            [topics::BRAIN, topics::SKIN].map(|topic| format!("{topic}/{}", creature.0));
-        let output = &mut sheet.output;
-        let brain = output.channel_named::<Brain>(topics::BRAIN, &brain)?;
-        let skin = output.channel_named::<PointCloud>(topics::SKIN, &skin)?;
+        let name = |topic: &str| format!("{topic}/{}", creature.0);
+        let brain = output.channel::<Brain>(topics::BRAIN, Some(&name(topics::BRAIN)))?;
+        let skin = output.channel::<PointCloud>(topics::SKIN, Some(&name(topics::SKIN)))?;
         self.creatures.insert(creature, (brain, skin));
         Ok(Some((brain, skin)))
     }
-}
 
-impl EncodeTick for ArenaEncoder {
-    type Data = TakenArena;
-
-    fn tick<W: Write>(
+    /// Sends the messages of a tick.
+    pub(super) fn tick<W: Write>(
         &mut self,
-        (_, now): (u64, u64),
         data: TakenArena,
-        sheet: &mut Sheet<W>,
+        output: &mut Output<W>,
     ) -> Result<(), RecordError> {
         if prost::Message::encoded_len(&data.message) > LARGEST_TICK {
             let reason = "a tick of more than 2 MiB, which no reader takes";
             return Err(RecordError::encode(topics::ARENA, reason));
         }
-        sheet.output.send_exact(self.tick, &data.message)?;
+        output.send_exact(self.tick, &data.message)?;
         if let Some(view) = data.view {
-            self.scene(now, &view, sheet)?;
-            self.creatures(now, view.creatures, sheet)?;
+            self.scene(&view, output)?;
+            self.creatures(view.creatures, output)?;
         }
         Ok(())
     }
@@ -218,13 +345,8 @@ fn attacks(now: u64, creatures: &[TakenCreature]) -> SceneEntity {
 fn arrow(from: DVec3, to: DVec3, [shaft, head]: [f64; 2], [r, g, b]: [f64; 3]) -> ArrowPrimitive {
     let (along, length) = ((to - from).normalize_or(DVec3::Z), from.distance(to));
     // foxglove's arrows point along +X: the second factor turns +X to +Z, the first turns +Z to `along`.
-    let turn = from_z_to(along)
-        * glam::DQuat::from_xyzw(
-            0.0,
-            -core::f64::consts::FRAC_1_SQRT_2,
-            0.0,
-            core::f64::consts::FRAC_1_SQRT_2,
-        );
+    let half = core::f64::consts::FRAC_1_SQRT_2;
+    let turn = from_z_to(along) * DQuat::from_xyzw(0.0, -half, 0.0, half);
     let point = (0.25 * length).min(0.2);
     ArrowPrimitive {
         pose: Some(pose(from, turn)),
