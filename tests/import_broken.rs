@@ -1,5 +1,5 @@
-//! Real models, cut short or with flipped bits: loading gives an error or a usable model, never a panic, an endless loop,
-//! or unbounded memory.
+//! Real models, cut short or with flipped bits: loading gives an error or a usable model, never a panic, an endless
+//! loop, or unbounded memory.
 
 #![expect(
     clippy::unwrap_used,

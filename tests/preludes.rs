@@ -20,7 +20,7 @@ macro_rules! use_each {
 }
 
 use_each! {
-    Affine Anchor Attachment BodyConfig BodyPoses ColliderBuildOptions CastOptions Climber ClimberConfig ClimberContact
+    Affine Anchor Attachment BodyConfig BodyPoses CastOptions Climber ClimberConfig ClimberContact
     ClimberError ClimberEvent ClimberGroup ClimberInput ClimberMode ClimberProxy ClimberState Clip ColliderMesh
     ContactPhase ContactQuery ContactRule CustomMode Debris DebrisConfig GripConfig Influence JointId MaterialPoint
     MeshSource ModeContext Motion NextMode Obstacle ObstacleId Others Palette Playback PointMotion PoseClock PoseTrack

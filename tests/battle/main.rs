@@ -1,5 +1,5 @@
-//! Battles pass their checks, each check fails on its own fault and on no other, and rocks, riders and climbers that get
-//! lost are brought back.
+//! Battles pass their checks, each check fails on its own fault and on no other, and rocks, riders and climbers that
+//! get lost are brought back.
 
 #![allow(
     clippy::unwrap_used,

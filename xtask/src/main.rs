@@ -41,9 +41,8 @@ enum Task {
         only: Option<String>,
     },
     /// Runs the checks that take too long for CI: every case of tests that have short forms, golden runs in other
-    /// builds, other libraries, the app on all of Bevy, a soak of half an hour and an hour of the giant's life. Takes some
-    /// three hours on a cold target.
-    /// Adds a line for each step to nightly.md in the target folder.
+    /// builds, other libraries, the app on all of Bevy, a soak of half an hour and an hour of the giant's life. Takes
+    /// some three hours on a cold target. Adds a line for each step to nightly.md in the target folder.
     Nightly {
         /// Run only the steps whose name contains this.
         #[arg(long, value_name = "NAME")]

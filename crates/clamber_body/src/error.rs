@@ -1,13 +1,14 @@
+use clamber_animation::AnimationError;
 use clamber_animation::ik::IkError;
-use clamber_surface::rig::JointId;
+use clamber_surface::rig::{JointId, RigError};
 use thiserror::Error;
 
 use crate::HumanJoint;
 
-/// Why a skeleton cannot be used as a human body.
+/// Why a skeleton cannot be used as a human body, clips cannot be carried over, or a body cannot be updated.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
-pub enum HumanoidError {
+pub enum BodyError {
     /// Joints that a body needs were not found.
     #[error("no joint was found for {}; name them with Humanoid::from_joints", listed(.0))]
     Missing(Vec<HumanJoint>),
@@ -46,6 +47,44 @@ pub enum HumanoidError {
         /// The reason.
         error: IkError,
     },
+    /// The inverse kinematics cannot turn the head.
+    #[error("the head: {0}")]
+    Head(IkError),
+    /// No clip is called `idle`.
+    #[error(
+        "no clip is called idle; give the clips the names of BodyClip, or carry over another figure's by Retarget"
+    )]
+    NoIdle,
+    /// The scale of a figure is not a finite number above 0.
+    #[error("the scale is {0}; it must be finite and more than 0")]
+    Scale(f64),
+    /// The legs of a body have no length.
+    #[error("the legs have no length")]
+    NoLegs,
+    /// A number of the frame is infinite or NaN.
+    #[error("{0} is not finite")]
+    NotFinite(&'static str),
+    /// The time since the last frame is negative, or not finite.
+    #[error("the time since the last frame is {0} s; it must be finite and not negative")]
+    Time(f64),
+    /// The body was made for another figure.
+    #[error("the body has {body} joints, the figure {figure}")]
+    OtherFigure {
+        /// Joints of the body.
+        body: usize,
+        /// Joints of the figure.
+        figure: usize,
+    },
+    /// A clip moves joints that the skeleton does not have, a clip has bad numbers, or a layer names a clip or a mask
+    /// that the figure does not have.
+    #[error(transparent)]
+    Animation(#[from] AnimationError),
+    /// A skeleton does not have its body's joints, or a clip or a pose does not fit the skeleton.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// A limb cannot be posed, such as one that a clip scales to nothing.
+    #[error(transparent)]
+    Ik(#[from] IkError),
 }
 
 fn listed(joints: &[HumanJoint]) -> String {

@@ -12,8 +12,8 @@ use clamber_surface::rig::{
     Channel, Clip, Interpolation, JointId, Keyframes, Playback, Pose, RigError, Skeleton,
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
-use thiserror::Error;
 
+use crate::BodyError;
 use crate::figure::sole_height;
 use crate::humanoid::{depth, reference};
 use crate::{Humanoid, Limb, LimbEnd};
@@ -24,18 +24,6 @@ const KEY_RATE: f64 = 30.0;
 /// Most key intervals of a carried clip, one hour at [`KEY_RATE`]. It bounds memory: a file may claim any length for a
 /// clip.
 const MOST_KEYS: f64 = 108_000.0;
-
-/// Why [`Retarget`] cannot carry clips over.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[non_exhaustive]
-pub enum RetargetError {
-    /// A skeleton does not have its body's joints, or a clip or a pose does not fit the source's skeleton.
-    #[error(transparent)]
-    Rig(#[from] RigError),
-    /// The legs of a body have no length.
-    #[error("the legs have no length")]
-    NoLegs,
-}
 
 /// Carries clips from one body to another.
 #[derive(Clone, Debug)]
@@ -85,11 +73,11 @@ impl<'a> Retarget<'a> {
     /// A retarget from one body to another, each with its skeleton.
     ///
     /// # Errors
-    /// [`RetargetError::NoLegs`], and [`RetargetError::Rig`] if a body has joints that its skeleton lacks.
+    /// [`BodyError::NoLegs`], and [`BodyError::Rig`] if a body has joints that its skeleton lacks.
     pub fn new(
         (from, source): (&'a Skeleton, &Humanoid),
         (to, target): (&'a Skeleton, &Humanoid),
-    ) -> Result<Self, RetargetError> {
+    ) -> Result<Self, BodyError> {
         check(source, from)?;
         check(target, to)?;
         let bound = [
@@ -99,7 +87,7 @@ impl<'a> Retarget<'a> {
         let length = |body: &Humanoid| body.legs.iter().map(Limb::length).sum::<f64>();
         let scale = length(target) / length(source);
         if !(scale.is_finite() && scale > 0.0) {
-            return Err(RetargetError::NoLegs);
+            return Err(BodyError::NoLegs);
         }
         let turn = about_y(source.facing, target.facing);
         let (start, turned) = start(to, &bound[1]);
@@ -131,8 +119,8 @@ impl<'a> Retarget<'a> {
     /// keys a second. A clip longer than an hour has 108,001 keys, farther apart.
     ///
     /// # Errors
-    /// [`RetargetError::Rig`] if the clip does not fit the source's skeleton.
-    pub fn clip(&self, clip: &Clip) -> Result<Clip, RetargetError> {
+    /// [`BodyError::Rig`] if the clip does not fit the source's skeleton.
+    pub fn clip(&self, clip: &Clip) -> Result<Clip, BodyError> {
         let duration = clip.duration();
         let keys = (duration * KEY_RATE).ceil().clamp(1.0, MOST_KEYS) as usize + 1;
         let times: Vec<f32> = (0..keys)
@@ -187,8 +175,8 @@ impl<'a> Retarget<'a> {
     /// the bind pose.
     ///
     /// # Errors
-    /// [`RetargetError::Rig`] if the pose does not fit the source's skeleton.
-    pub fn pose(&self, source: &Pose) -> Result<Pose, RetargetError> {
+    /// [`BodyError::Rig`] if the pose does not fit the source's skeleton.
+    pub fn pose(&self, source: &Pose) -> Result<Pose, BodyError> {
         let moved = models(self.from, source)?;
         let turned = |joint: JointId| {
             let [now, rest] =

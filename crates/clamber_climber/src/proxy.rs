@@ -85,10 +85,10 @@ impl Climber {
     }
 
     /// The knockback of an impulse, newton seconds, for
-    /// [`StepRules::knockback`](crate::StepRules::knockback): the impulse over the climber's mass. It knocks the climber down by the same rules as every blow
-    /// ([`TumbleConfig::knock_speed`](crate::TumbleConfig::knock_speed)), and hurts as a landing at that speed does
-    /// ([`HealthConfig::safe_speed`](crate::HealthConfig::safe_speed)). `None` for an impulse that is zero or not
-    /// finite.
+    /// [`StepRules::knockback`](crate::StepRules::knockback): the impulse over the climber's mass. It knocks the
+    /// climber down by the same rules as every blow ([`TumbleConfig::knock_speed`](crate::TumbleConfig::knock_speed)),
+    /// and hurts as a landing at that speed does ([`HealthConfig::safe_speed`](crate::HealthConfig::safe_speed)).
+    /// `None` for an impulse that is zero or not finite.
     pub fn knockback_of(&self, impulse: DVec3, by: Option<ObstacleId>) -> Option<Knockback> {
         let velocity = impulse / self.config().body.mass;
         let speed = velocity.length();

@@ -143,8 +143,8 @@ pub type ContactRuleFn<'a> = dyn Fn(&ContactQuery<'_>) -> ContactRule + 'a;
 pub struct ContactQuery<'a> {
     /// The climber, by [`StepRules::id`](crate::StepRules::id).
     pub climber: Option<ObstacleId>,
-    /// The climber's state at the tick's beginning. Through its [`custom_slots`](ClimberState::custom_slots), a rule can depend on
-    /// the game's modes.
+    /// The climber's state at the tick's beginning. Through its [`custom_slots`](ClimberState::custom_slots), a rule
+    /// can depend on the game's modes.
     pub state: &'a ClimberState,
     /// The climber's configuration.
     pub config: &'a ClimberConfig,

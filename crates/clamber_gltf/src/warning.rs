@@ -159,7 +159,7 @@ pub enum ImportWarning {
 }
 
 impl ImportWarning {
-    /// Approximate size of the warning in memory, bytes.
+    /// Approximate size of the warning in memory, bytes. A variant with a text or a list needs an arm here.
     pub(crate) fn bytes(&self) -> usize {
         let held = match self {
             Self::WeakPointWithoutJoint { node: text }

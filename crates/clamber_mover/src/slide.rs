@@ -42,8 +42,8 @@ impl Mover<'_> {
     /// Moves a body along a path. [`Mover::touched`] then holds the contacts that the body touches at the end, and
     /// those that stopped it.
     ///
-    /// If the path is not finite or its body is invalid ([`MoverBody::validate`](crate::MoverBody::validate)), the body stays at its start, and
-    /// [`Moved::is_clear`] is false.
+    /// If the path is not finite or its body is invalid ([`MoverBody::validate`](crate::MoverBody::validate)), the body
+    /// stays at its start, and [`Moved::is_clear`] is false.
     pub fn slide(&mut self, path: &Path) -> Moved {
         let mut moved = self.find_way(path);
         if path.crushed && moved.rounds > 0 && path.begin == Begin::Start {

@@ -27,7 +27,8 @@ pub struct GraphConfig {
     /// `clamber_colossus::Creature::rate`. Default: 1.
     pub clip_rate: f64,
     /// Parts of the skin that can be removed one by one, such as plates of armour. The skin below them is divided into
-    /// patches as well. A living creature's plates are `clamber_colossus::CreatureKind::plates`. Default: none; at most 65,536.
+    /// patches as well. A living creature's plates are `clamber_colossus::CreatureKind::plates`. Default: none; at most
+    /// 65,536.
     pub plates: Vec<Vec<TriangleId>>,
 }
 

@@ -18,7 +18,8 @@ pub enum Stage {
     Jumps,
 }
 
-/// The state of a build.
+/// How far the build of a graph has come: its stage, and the steps of that stage. The build passes it to the caller's
+/// function again and again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {

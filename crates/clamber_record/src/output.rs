@@ -159,8 +159,8 @@ impl<W: Write> Output<W> {
         add_channel::<_, M>(self.writer()?, topic, name)
     }
 
-    /// Writes chunks of ticks, ends the file and returns `out`. `encode` sends the messages of a tick's data. Log lines,
-    /// meshes and saved states are sent here.
+    /// Writes chunks of ticks, ends the file and returns `out`. `encode` sends the messages of a tick's data. Log
+    /// lines, meshes and saved states are sent here.
     pub(crate) fn write<D>(
         mut self,
         mut encode: impl FnMut(D, &mut Self) -> Result<(), RecordError>,

@@ -84,9 +84,9 @@ pub enum Continuity {
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 #[non_exhaustive]
 pub struct FollowResult {
-    /// Motion of the material point, from where it was last followed to where it is now. For [`Continuity::Teleported`], it
-    /// is the motion that the obstacle reports for the tick. It does not start where the point was last followed, so
-    /// the teleport is not part of it.
+    /// Motion of the material point, from where it was last followed to where it is now. For
+    /// [`Continuity::Teleported`], it is the motion that the obstacle reports for the tick. It does not start where the
+    /// point was last followed, so the teleport is not part of it.
     pub motion: PointMotion,
     /// How the point got to its current position.
     pub continuity: Continuity,
@@ -151,8 +151,8 @@ impl Attachment {
     ///
     /// `slack` is the largest allowed distance, metres, between the stored position and the previous position that the
     /// obstacle reports. It must be at least 0. For a character of human size 0.01 is right: more than rounding, less
-    /// than a player sees. A larger distance is allowed for an obstacle that was [placed](Continuity::Teleported), and up
-    /// to 8 times its last move ([`Continuity::SkippedTicks`]).
+    /// than a player sees. A larger distance is allowed for an obstacle that was [placed](Continuity::Teleported), and
+    /// up to 8 times its last move ([`Continuity::SkippedTicks`]).
     ///
     /// Returns `None` and changes nothing if the material is gone. The same happens if the distance is too large, which
     /// means that the id now names another obstacle.

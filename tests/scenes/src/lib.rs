@@ -8,7 +8,8 @@
 //! - [`controllers`]: thirty scenes on moving ground, for any character controller.
 //! - [`rocks`]: rocks that fall on a creature.
 //! - [`valley`]: the terrain of the scenes.
-//! - [`battle`]: the main scene: a climber against a giant that lives by its brain, or on a creature that walks and shakes.
+//! - [`battle`]: the main scene: a climber against a giant that lives by its brain, or on a creature that walks and
+//!   shakes.
 //! - [`duel`]: two climbers against the giant, for fights over a network.
 //! - `hero`, with the feature `record` or `render`: the body of a battle's climber.
 //! - `picture`, with the feature `render`: a battle's meshes, light and cameras for the renderer.

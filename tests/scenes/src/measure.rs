@@ -77,8 +77,8 @@ pub fn mean_us(
     Ok(start.elapsed().as_secs_f64() * 1e6 / f64::from(count))
 }
 
-/// A bench fails if a number misses its bound by more than this factor, unless it runs briefly. Noise does not reach it,
-/// but what costs ten times as much as it did does.
+/// A bench fails if a number misses its bound by more than this factor, unless it runs briefly. Noise does not reach
+/// it, but what costs ten times as much as it did does.
 const FAR: f64 = 4.0;
 
 /// The bound that a measured number should keep.

@@ -53,8 +53,8 @@ impl Stage {
         Ok(())
     }
 
-    /// Everything to draw for the battle's current tick, with the creature in the pose `palette`: [`Battle::palette`] or
-    /// another one. The hero is drawn as it was last [watched](Stage::watch).
+    /// Everything to draw for the battle's current tick, with the creature in the pose `palette`: [`Battle::palette`]
+    /// or another one. The hero is drawn as it was last [watched](Stage::watch).
     pub fn drawn<'a>(&'a self, battle: &Battle<'_>, palette: &'a Palette) -> Vec<Drawn<'a>> {
         let at = |mesh, world_from_model, palette| Drawn {
             mesh,

@@ -1,5 +1,5 @@
-//! Models in files, at rest and in poses of their clips: skinning stays within its error bound, every query has the bits
-//! of brute force, and every bound holds its vertices.
+//! Models in files, at rest and in poses of their clips: skinning stays within its error bound, every query has the
+//! bits of brute force, and every bound holds its vertices.
 //!
 //! The files are the giant, the models in the folder of `CLAMBER_TEST_DATA`, and all `.glb` and `.gltf` files in the
 //! folder of `CLAMBER_FILES`, if that variable is set. With `--nocapture` the tests print a table for each file.

@@ -36,9 +36,9 @@ use clamber_fight::{Arena, ArenaEvent, Order};
 /// # let _ = spawn;
 /// ```
 ///
-/// What else the game does to it goes by [`FightArena::order`]. To save, load and roll back, use the arena itself: [`FightArena::arena_mut`]. Do it before
-/// [`ClamberSystems::Climb`](crate::ClamberSystems::Climb): entities show it in the same tick then, otherwise in the
-/// next.
+/// What else the game does to it goes by [`FightArena::order`]. To save, load and roll back, use the arena itself:
+/// [`FightArena::arena_mut`]. Do it before [`ClamberSystems::Climb`](crate::ClamberSystems::Climb): entities show it in
+/// the same tick then, otherwise in the next.
 #[derive(Resource, Clone, Debug)]
 pub struct FightArena {
     arena: Arena,
@@ -54,8 +54,8 @@ impl FightArena {
         }
     }
 
-    /// Gives an order: it is followed at the beginning of the next tick, after those that were given before it. If one of
-    /// a tick's orders cannot be followed, the arena stands still for that tick, and a warning tells why.
+    /// Gives an order: it is followed at the beginning of the next tick, after those that were given before it. If one
+    /// of a tick's orders cannot be followed, the arena stands still for that tick, and a warning tells why.
     pub fn order(&mut self, order: Order) {
         self.orders.push(order);
     }

@@ -228,8 +228,8 @@ fn landing_on_a_creature_whose_skin_is_ahead_is_drawn_without_a_jump() {
             .filter(|drawn| drawn.mode == ClimberMode::Falling)
             .count();
         assert!(airborne as f64 > 0.8 * fps, "{airborne}");
-        // A climber that lands takes the skin's 3.6 m/s at once. The way that the skin is ahead, some 0.1 m, fades at 1 m/s
-        // at most. A jump of that way would be 6 m/s at 60 frames a second, and 14 m/s at 144.
+        // A climber that lands takes the skin's 3.6 m/s at once. The way that the skin is ahead, some 0.1 m, fades at 1
+        // m/s at most. A jump of that way would be 6 m/s at 60 frames a second, and 14 m/s at 144.
         let steps: Vec<DVec3> = all
             .windows(2)
             .map(|pair| pair[1].position - pair[0].position)

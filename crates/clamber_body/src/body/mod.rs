@@ -4,7 +4,6 @@ mod carry;
 mod climb;
 mod context;
 mod detour;
-mod error;
 mod event;
 mod feet;
 mod frame;
@@ -28,7 +27,6 @@ use clamber_surface::rig::Pose;
 use clamber_world::Attachment;
 use glam::DVec3;
 
-pub use error::BodyError;
 pub use event::Plant;
 pub use frame::BodyInput;
 pub use play::OverlayClip;
@@ -37,7 +35,7 @@ use memory::Memory;
 use play::Player;
 
 use crate::figure::Place;
-use crate::{Extremity, Figure, Side};
+use crate::{BodyError, Extremity, Figure, Side};
 
 /// The body of one climber. In each drawn frame it is posed from the climber's state and the obstacles around it.
 ///

@@ -1,7 +1,6 @@
 //! A figure: the data that all bodies of one kind share.
 
 mod clips;
-mod error;
 mod extremity;
 mod gait;
 mod limb_shape;
@@ -13,7 +12,6 @@ use clamber_surface::rig::{Clip, Skeleton};
 use glam::DVec3;
 
 pub use clips::BodyClip;
-pub use error::FigureError;
 pub use extremity::Extremity;
 
 pub(crate) use clips::Clips;
@@ -22,7 +20,7 @@ pub(crate) use limb_shape::{LimbShape, Place, sole_height, turned};
 pub(crate) use posture::Postures;
 
 use crate::humanoid::reference;
-use crate::{Humanoid, Side};
+use crate::{BodyError, Humanoid, Side};
 
 /// The data that all [bodies](crate::Body) of one kind share: the skeleton, the roles of its joints, and the clips.
 ///
@@ -50,13 +48,13 @@ impl Figure {
     /// A figure from a skeleton, its humanoid and its clips, with metres as model units.
     ///
     /// # Errors
-    /// [`FigureError::NoIdle`] if no clip is called `idle`, [`FigureError::Animation`] or [`FigureError::Rig`] if the
-    /// clips or the humanoid belong to another skeleton, [`FigureError::Ik`] if the head cannot be turned.
+    /// [`BodyError::NoIdle`] if no clip is called `idle`, [`BodyError::Animation`] or [`BodyError::Rig`] if the
+    /// clips or the humanoid belong to another skeleton, [`BodyError::Head`] if the head cannot be turned.
     pub fn new(
         skeleton: Skeleton,
         humanoid: Humanoid,
         clips: Vec<Clip>,
-    ) -> Result<Self, FigureError> {
+    ) -> Result<Self, BodyError> {
         Self::with_scale(skeleton, humanoid, clips, 1.0)
     }
 
@@ -64,19 +62,19 @@ impl Figure {
     /// suits a body of the resulting size.
     ///
     /// # Errors
-    /// As [`Figure::new`], and [`FigureError::Scale`] if the scale is not a finite number above 0.
+    /// As [`Figure::new`], and [`BodyError::Scale`] if the scale is not a finite number above 0.
     pub fn with_scale(
         skeleton: Skeleton,
         humanoid: Humanoid,
         clips: Vec<Clip>,
         scale: f64,
-    ) -> Result<Self, FigureError> {
+    ) -> Result<Self, BodyError> {
         if !(scale.is_finite() && scale > 0.0) {
-            return Err(FigureError::Scale(scale));
+            return Err(BodyError::Scale(scale));
         }
         crate::retarget::check(&humanoid, &skeleton)?;
         let mut set = AnimationSet::new(&skeleton, clips)?;
-        let found = Clips::find(&set).ok_or(FigureError::NoIdle)?;
+        let found = Clips::find(&set).ok_or(BodyError::NoIdle)?;
         let feet = crate::retarget::feet(&humanoid);
         let bound = reference(&skeleton, humanoid.hips, humanoid.head, feet);
         let limb = |extremity: Extremity| {
@@ -99,7 +97,8 @@ impl Figure {
                 .rev()
                 .map(|joint| (*joint, NECK_TURN_SHARE)),
         );
-        let look = LookAt::new(&skeleton, &chain, eye, own * humanoid.facing, DVec3::Y)?;
+        let look = LookAt::new(&skeleton, &chain, eye, own * humanoid.facing, DVec3::Y)
+            .map_err(BodyError::Head)?;
         let from = humanoid.spine.first().copied().unwrap_or(humanoid.hips);
         let mask = JointMask::branch(&skeleton, from)?;
         let upper_body = set.add_mask(mask)?;

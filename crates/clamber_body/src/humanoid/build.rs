@@ -6,7 +6,7 @@ use glam::{DAffine3, DVec3};
 
 use super::names::words;
 use super::{HumanJoint, Humanoid, Limb, LimbEnd, Side, reference};
-use crate::HumanoidError;
+use crate::BodyError;
 
 /// The joints of a body before they are checked.
 pub(super) struct Named {
@@ -40,18 +40,18 @@ impl Humanoid {
     /// chest, neck and toes are optional.
     ///
     /// # Errors
-    /// [`HumanoidError::Missing`] with all missing joints, [`HumanoidError::NoJoint`], [`HumanoidError::Twice`],
-    /// [`HumanoidError::NotBelow`] if a limb, the chest or the head has the wrong ancestor,
-    /// [`HumanoidError::NoFacing`], and [`HumanoidError::Limb`] if inverse kinematics refuse a limb, such as one
+    /// [`BodyError::Missing`] with all missing joints, [`BodyError::NoJoint`], [`BodyError::Twice`],
+    /// [`BodyError::NotBelow`] if a limb, the chest or the head has the wrong ancestor,
+    /// [`BodyError::NoFacing`], and [`BodyError::Limb`] if inverse kinematics refuse a limb, such as one
     /// without length.
     pub fn from_joints(
         skeleton: &Skeleton,
         joints: &[(HumanJoint, JointId)],
-    ) -> Result<Self, HumanoidError> {
+    ) -> Result<Self, BodyError> {
         let count = skeleton.joints().len();
         for (index, &(what, joint)) in joints.iter().enumerate() {
             if joint.index() >= count {
-                return Err(HumanoidError::NoJoint {
+                return Err(BodyError::NoJoint {
                     what,
                     joint,
                     joints: count,
@@ -62,7 +62,7 @@ impl Humanoid {
                 .iter()
                 .any(|(role, other)| *role == what || *other == joint)
             {
-                return Err(HumanoidError::Twice { what });
+                return Err(BodyError::Twice { what });
             }
         }
         let find = |what: HumanJoint| joints.iter().find(|(role, _)| *role == what);
@@ -98,7 +98,7 @@ impl Humanoid {
         let (Some(hips), Some(head), [Some(a), Some(b)], [Some(c), Some(d)]) =
             (hips, head, arms, legs)
         else {
-            return Err(HumanoidError::Missing(missing));
+            return Err(BodyError::Missing(missing));
         };
         let named = Named {
             hips,
@@ -134,13 +134,13 @@ struct Bound<'a> {
 }
 
 impl Named {
-    pub(super) fn build(self, skeleton: &Skeleton) -> Result<Humanoid, HumanoidError> {
+    pub(super) fn build(self, skeleton: &Skeleton) -> Result<Humanoid, BodyError> {
         let below = |joint, ancestor| skeleton.is_descendant_or_self(joint, ancestor);
         let check = |what: HumanJoint, joint, above: HumanJoint, ancestor| {
             if below(joint, ancestor) && joint != ancestor {
                 Ok(())
             } else {
-                Err(HumanoidError::NotBelow { what, above })
+                Err(BodyError::NotBelow { what, above })
             }
         };
         check(HumanJoint::Head, self.head, HumanJoint::Hips, self.hips)?;
@@ -176,11 +176,11 @@ impl Named {
         let [left, right] = [&self.legs[0], &self.legs[1]].map(|leg| bound.place(leg.upper));
         let across = (left - right) * DVec3::new(1.0, 0.0, 1.0);
         let facing = across.cross(DVec3::Y).try_normalize();
-        bound.facing = facing.ok_or(HumanoidError::NoFacing)?;
+        bound.facing = facing.ok_or(BodyError::NoFacing)?;
         let sides = Side::BOTH.map(|side| {
             let arm = bound.limb(&self.arms[side.index()], HumanJoint::UpperArm(side))?;
             let leg = bound.limb(&self.legs[side.index()], HumanJoint::UpperLeg(side))?;
-            Ok((arm, leg))
+            Ok::<_, BodyError>((arm, leg))
         });
         let [left, right] = sides;
         let ((left_arm, left_leg), (right_arm, right_leg)) = (left?, right?);
@@ -214,8 +214,8 @@ impl Bound<'_> {
         self.model(joint).translation
     }
 
-    fn limb(&self, named: &NamedLimb, what: HumanJoint) -> Result<Limb, HumanoidError> {
-        let failed = |error| HumanoidError::Limb { limb: what, error };
+    fn limb(&self, named: &NamedLimb, what: HumanJoint) -> Result<Limb, BodyError> {
+        let failed = |error| BodyError::Limb { limb: what, error };
         let (upper, lower) = (named.upper, named.lower);
         let is_leg = matches!(what, HumanJoint::UpperLeg(_));
         let below = |joint| self.skeleton.is_descendant_or_self(joint, lower) && joint != lower;

@@ -5,15 +5,15 @@ use clamber_surface::rig::{JointId, Skeleton};
 use super::build::{Named, NamedEnd, NamedLimb};
 use super::names::{Meaning, Part};
 use super::{HumanJoint, Humanoid, Side};
-use crate::HumanoidError;
+use crate::BodyError;
 
 impl Humanoid {
     /// Finds the body in a skeleton by the joints' names. Two joints are found by the hierarchy alone: the hips, where
     /// legs and spine meet, and the chest, where the arms meet.
     ///
     /// # Errors
-    /// [`HumanoidError::Missing`] with all missing joints, and the errors of [`Humanoid::from_joints`].
-    pub fn find(skeleton: &Skeleton) -> Result<Self, HumanoidError> {
+    /// [`BodyError::Missing`] with all missing joints, and the errors of [`Humanoid::from_joints`].
+    pub fn find(skeleton: &Skeleton) -> Result<Self, BodyError> {
         Search::new(skeleton).named()?.build(skeleton)
     }
 }
@@ -52,7 +52,7 @@ impl<'a> Search<'a> {
         self.skeleton.is_descendant_or_self(joint, ancestor)
     }
 
-    fn named(&self) -> Result<Named, HumanoidError> {
+    fn named(&self) -> Result<Named, BodyError> {
         let mut missing = Vec::new();
         let mut need = |found: Option<JointId>, what: HumanJoint| {
             if found.is_none() {
@@ -96,12 +96,12 @@ impl<'a> Search<'a> {
         let ([Some(left), Some(right)], [Some(left_leg), Some(right_leg)], Some(head)) =
             (arms, legs, head)
         else {
-            return Err(HumanoidError::Missing(missing));
+            return Err(BodyError::Missing(missing));
         };
         let ends = [left_leg.upper, right_leg.upper, head];
         let mut above = core::iter::successors(Some(head), |joint| self.parent(*joint));
         let hips = above.find(|joint| ends.iter().all(|end| self.is_below(*end, *joint)));
-        let hips = hips.ok_or_else(|| HumanoidError::Missing(vec![HumanJoint::Hips]))?;
+        let hips = hips.ok_or_else(|| BodyError::Missing(vec![HumanJoint::Hips]))?;
         Ok(Named {
             hips,
             chest: None,

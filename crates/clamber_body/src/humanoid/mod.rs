@@ -72,7 +72,8 @@ pub struct Limb {
     pub end: LimbEnd,
     /// The toes of a leg, if the skeleton has them; `None` for arms.
     pub toes: Option<JointId>,
-    /// Chains of joints below the hand, one per finger, each from the palm outward. Empty for legs.
+    /// The joints of each finger, from the palm to the tip, found by their names below the forearm; empty for legs. The
+    /// thumb tells which way the palm faces; a body does not move the fingers.
     pub fingers: Vec<Vec<JointId>>,
     /// Inverse kinematics that bring the end to a target.
     pub ik: TwoBone,

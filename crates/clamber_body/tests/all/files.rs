@@ -1,7 +1,7 @@
 //! Bodies in files: the project's hero and third-party characters.
 
 use clamber_animation::ik::{ReachResult, TwoBoneGoal};
-use clamber_body::{HumanJoint, Humanoid, HumanoidError, Limb, LimbEnd, Retarget, Side};
+use clamber_body::{BodyError, HumanJoint, Humanoid, Limb, LimbEnd, Retarget, Side};
 use clamber_scenes::test_data;
 use clamber_surface::mesh::Rig;
 use clamber_surface::rig::{JointId, Pose};
@@ -191,13 +191,13 @@ fn files_without_a_whole_body_are_refused_with_what_they_lack() {
     ];
     for (file, lacks) in cases {
         let Some(rig) = load(file) else { return };
-        let Err(HumanoidError::Missing(missing)) = Humanoid::find(&rig.skeleton) else {
+        let Err(BodyError::Missing(missing)) = Humanoid::find(&rig.skeleton) else {
             panic!("{file} has a body");
         };
         for joint in lacks {
             assert!(missing.contains(&joint), "{file} lacks {missing:?}");
         }
-        let text = HumanoidError::Missing(missing).to_string();
+        let text = BodyError::Missing(missing).to_string();
         assert!(text.contains("left "), "{text}");
     }
 }
@@ -210,7 +210,7 @@ fn joints_without_names_are_named_by_hand() {
     };
     assert!(matches!(
         Humanoid::find(&rig.skeleton),
-        Err(HumanoidError::Missing(_))
+        Err(BodyError::Missing(_))
     ));
     use HumanJoint::{Foot, Hand, Head, Hips, LowerArm, LowerLeg, UpperArm, UpperLeg};
     let joint = |name: &str| rig.skeleton.find(name).unwrap();
@@ -268,14 +268,14 @@ fn joints_without_names_are_named_by_hand() {
     };
     let error = refused(&|joints| joints.truncate(3));
     assert!(
-        matches!(&error, HumanoidError::Missing(missing) if missing.len() == 11),
+        matches!(&error, BodyError::Missing(missing) if missing.len() == 11),
         "{error}"
     );
     let error = refused(&|joints| joints[1].1 = joints[0].1);
-    assert_eq!(error, HumanoidError::Twice { what: Head });
+    assert_eq!(error, BodyError::Twice { what: Head });
     let error = refused(&|joints| joints[1].1.0 = 99);
     assert!(
-        matches!(error, HumanoidError::NoJoint { what: Head, .. }),
+        matches!(error, BodyError::NoJoint { what: Head, .. }),
         "{error}"
     );
     let error = refused(&|joints| {
@@ -286,7 +286,7 @@ fn joints_without_names_are_named_by_hand() {
     let above = UpperArm(Side::Right);
     assert_eq!(
         error,
-        HumanoidError::NotBelow {
+        BodyError::NotBelow {
             what: LowerArm(Side::Right),
             above
         }

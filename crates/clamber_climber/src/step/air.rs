@@ -52,7 +52,7 @@ impl Tick<'_> {
             self.state.untouched = 0.0;
             return;
         }
-        let (before, air) = (self.state.untouched, self.rules.air_velocity);
+        let (before, air) = (self.state.untouched, self.judge.rules.air_velocity);
         let after = before + self.dt();
         self.state.untouched = after.min(FRAME_KEPT_TIME + FRAME_FADE_TIME);
         let left = FRAME_KEPT_TIME + FRAME_FADE_TIME - before.max(FRAME_KEPT_TIME);

@@ -83,7 +83,7 @@ impl Tick<'_> {
             start: if was_placed {
                 motion.previous_position + offset
             } else {
-                self.began
+                self.before.position
             },
             position: motion.position + offset,
             swept: !was_placed,
@@ -98,7 +98,7 @@ impl Tick<'_> {
 
     /// The climber's own velocity at the tick's beginning: relative to its support, and rotated with it.
     pub(super) fn own_velocity(&self) -> DVec3 {
-        let own = self.was - self.base_was;
+        let own = self.before.velocity - self.before.base_velocity;
         let carried = self.carried.as_ref();
         carried.map_or(own, |carried| carried.motion.turn * own)
     }
@@ -144,7 +144,7 @@ impl Tick<'_> {
                 ..motion
             },
             velocity_before: Some(motion.velocity),
-            start: self.began,
+            start: self.before.position,
             position: attachment.position(),
             swept: true,
         });

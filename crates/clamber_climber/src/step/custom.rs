@@ -35,8 +35,8 @@ pub trait CustomMode {
     /// moves. Modes are asked in the order in which they are given; after one begins, the rest are not asked in that
     /// tick.
     ///
-    /// This is also the place to count down a timer such as a cooldown, kept in [`ModeContext::custom_slots`]. The timer
-    /// misses the ticks in which an earlier mode in the list begins. While the mode itself runs, count in
+    /// This is also the place to count down a timer such as a cooldown, kept in [`ModeContext::custom_slots`]. The
+    /// timer misses the ticks in which an earlier mode in the list begins. While the mode itself runs, count in
     /// [`CustomMode::step`].
     fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool;
 
@@ -56,7 +56,7 @@ pub struct ModeContext<'t, 'a> {
 impl Tick<'_> {
     /// Starts the first of the game's modes that begins, if one does.
     pub(super) fn start_custom_mode(&mut self) {
-        let modes = self.rules.modes;
+        let modes = self.judge.rules.modes;
         for mode in modes {
             let own = ClimberMode::Custom(mode.id());
             if self.state.mode != own && mode.begins(&mut ModeContext { tick: self }) {
@@ -67,7 +67,7 @@ impl Tick<'_> {
     }
 
     pub(super) fn run_custom_mode(&mut self, id: u16) -> NextMode {
-        let modes = self.rules.modes;
+        let modes = self.judge.rules.modes;
         match modes.iter().find(|mode| mode.id() == id) {
             Some(mode) => mode.step(&mut ModeContext { tick: self }),
             // A step without this mode's handler ends the mode: the climber falls at its velocity.
@@ -84,7 +84,7 @@ impl<'a> ModeContext<'_, 'a> {
 
     /// The blow that struck the climber since the last tick.
     pub fn knockback(&self) -> Option<&Knockback> {
-        self.tick.rules.knockback.as_ref()
+        self.tick.judge.rules.knockback.as_ref()
     }
 
     /// The climber's configuration.
@@ -135,7 +135,7 @@ impl<'a> ModeContext<'_, 'a> {
         let tick = &self.tick;
         match &tick.carried {
             Some(carried) => carried.position,
-            None if tick.has_moved => tick.state.position,
+            None if tick.motion.is_done => tick.state.position,
             None => tick.state.position + tick.state.base_velocity * tick.dt(),
         }
     }
@@ -155,7 +155,7 @@ impl<'a> ModeContext<'_, 'a> {
 
     /// Velocity of the air, in world space, metres a second ([`StepRules::air_velocity`](crate::StepRules)).
     pub fn air_velocity(&self) -> DVec3 {
-        self.tick.rules.air_velocity
+        self.tick.judge.rules.air_velocity
     }
 
     /// Sets the velocity that the climber's own motion is measured against from now on, in world space, metres a
@@ -203,7 +203,7 @@ impl<'a> ModeContext<'_, 'a> {
     }
 
     fn here(&self) -> DVec3 {
-        if self.tick.has_moved {
+        if self.tick.motion.is_done {
             self.tick.state.position
         } else {
             self.position()
@@ -260,7 +260,7 @@ impl<'a> ModeContext<'_, 'a> {
 
     /// Drops the support, and keeps the mode and the climber's current velocity.
     pub fn detach(&mut self) {
-        let moved = self.tick.has_moved;
+        let moved = self.tick.motion.is_done;
         let velocity = if moved {
             self.tick.state.velocity
         } else {

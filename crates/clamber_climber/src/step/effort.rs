@@ -24,7 +24,7 @@ impl Tick<'_> {
     /// - A blow faster than a jump off a hold takes a climber off its hold or ledge. A slower one makes it swing from
     ///   its hold, and does nothing to a climber that hangs from a ledge.
     pub(super) fn be_struck(&mut self) {
-        let Some(blow) = self.rules.knockback else {
+        let Some(blow) = self.judge.rules.knockback else {
             return;
         };
         self.hurt(blow.damage);
@@ -52,7 +52,7 @@ impl Tick<'_> {
         } else {
             self.state.velocity += blow.velocity;
         }
-        self.was = self.state.velocity;
+        self.before.velocity = self.state.velocity;
     }
 
     /// A velocity without its component into the ground underfoot, so that a climber that is knocked over while it
@@ -80,7 +80,7 @@ impl Tick<'_> {
 
     /// Leaves the support because of a blow, with the climber's current velocity.
     pub(super) fn be_knocked_off(&mut self) -> NextMode {
-        let by = self.rules.knockback.and_then(|blow| blow.by);
+        let by = self.judge.rules.knockback.and_then(|blow| blow.by);
         if let Some(from) = self.attachment() {
             self.event(ClimberEvent::KnockedOff { from, by });
         }
@@ -94,7 +94,7 @@ impl Tick<'_> {
         // The climber's own push has moved a free support as expected, a held support not at all, and others in
         // between.
         self.support_change = before.map(|before| {
-            let expected = nearest_between(before, self.base_was, motion.velocity);
+            let expected = nearest_between(before, self.before.base_velocity, motion.velocity);
             motion.velocity - expected
         });
         self.shake_by(self.support_change.unwrap_or(DVec3::ZERO));
@@ -126,7 +126,7 @@ impl Tick<'_> {
     /// stamina by its speed; up to the walking speed, it is free.
     pub(super) fn catches(&mut self, touch: &MoverContact, fastest: f64) -> bool {
         // The speed is taken before contacts: whether the tick ends in a contact is chance.
-        let velocity = self.flew_at.unwrap_or(self.state.velocity);
+        let velocity = self.motion.flew_at.unwrap_or(self.state.velocity);
         let speed = (velocity - self.mover.velocity_of(touch)).length();
         let hard = (speed - self.config.ground.walk_speed).max(0.0);
         if speed <= fastest && self.spend(|stamina| stamina.catch_cost * hard) {
@@ -189,7 +189,7 @@ impl Tick<'_> {
         if let Some(from) = self.attachment() {
             self.event(ClimberEvent::Thrown { acceleration, from });
         }
-        self.state.velocity = self.was;
+        self.state.velocity = self.before.velocity;
         Some(self.leave(ClimberMode::Falling))
     }
 
@@ -199,7 +199,7 @@ impl Tick<'_> {
         if self.state.shake.length() <= tumble.knock_acceleration {
             return None;
         }
-        self.state.velocity = self.was;
+        self.state.velocity = self.before.velocity;
         Some(self.begin_tumbling(None))
     }
 

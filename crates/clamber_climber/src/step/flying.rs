@@ -134,7 +134,7 @@ impl Tick<'_> {
     ///
     /// Positions are exactly on the parabola at each tick's end: the acceleration is constant over the tick.
     fn fall(&mut self) -> DVec3 {
-        self.has_flown = true;
+        self.motion.has_flown = true;
         let (up, dt) = (self.config.up(), self.dt());
         let rising = (self.state.velocity - self.state.base_velocity).dot(up) > 0.0;
         self.state.flying.jumping &= rising;
@@ -146,7 +146,7 @@ impl Tick<'_> {
         let change = self.limited_by_air(self.config.gravity * (weight * dt));
         let target = self.state.position + (self.state.velocity + change * 0.5) * dt;
         let falling = self.state.velocity + change;
-        self.flew_at = Some(falling);
+        self.motion.flew_at = Some(falling);
         let moved = self.slide_at(&self.path(target), Intent::Go, falling);
         self.state.position = moved.position;
         self.state.velocity = self.clipped_after_hits(falling);
@@ -163,7 +163,7 @@ impl Tick<'_> {
     fn limited_by_air(&self, change: DVec3) -> DVec3 {
         let down = change.normalize_or_zero();
         let most = self.config.ground.terminal_speed;
-        let speed = (self.state.velocity - self.rules.air_velocity).dot(down);
+        let speed = (self.state.velocity - self.judge.rules.air_velocity).dot(down);
         let gained = change.length();
         let after = if speed > most {
             (speed - gained).max(most)
@@ -233,7 +233,7 @@ impl Tick<'_> {
     }
 
     pub(super) fn friction_of(&self, touch: &MoverContact) -> f64 {
-        if self.rules.contact.is_none() {
+        if self.judge.rules.contact.is_none() {
             return 1.0;
         }
         self.judge.rule_of(touch).usable_friction()

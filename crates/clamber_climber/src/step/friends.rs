@@ -67,7 +67,7 @@ impl Tick<'_> {
     /// True if this climber or the other one moves on its own.
     fn is_passing(&self, other: &CharacterBody) -> bool {
         let slow = PASS_PARTING_SPEED * STILL_SPEED_SHARE * self.config.body.radius;
-        let own = self.was - self.base_was;
+        let own = self.before.velocity - self.before.base_velocity;
         self.input.walk != DVec3::ZERO || own.length().max(other.own_velocity.length()) > slow
     }
 
@@ -95,7 +95,7 @@ impl Tick<'_> {
         let body = self.body();
         // A climber on the head of one that stands up is placed there.
         let placed = self.carried.as_ref().filter(|carried| !carried.swept);
-        let capsule = body.at(placed.map_or(self.began, |carried| carried.position));
+        let capsule = body.at(placed.map_or(self.before.position, |carried| carried.position));
         let apart = between(&other.capsule, &capsule);
         let up = self.config.up();
         let least = other.capsule.radius.min(capsule.radius);
@@ -132,7 +132,7 @@ impl Tick<'_> {
     /// The side to which the climber parts from another one at the same place: opposite for the two. `None` without an
     /// id of its own, since both would then go to the same side in every tick.
     fn side_of(&self, id: ObstacleId) -> Option<DVec3> {
-        let own = self.rules.id.filter(|own| *own != id)?;
+        let own = self.judge.rules.id.filter(|own| *own != id)?;
         let side = self.config.up().any_orthonormal_vector();
         Some(if own < id { -side } else { side })
     }

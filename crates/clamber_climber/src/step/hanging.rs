@@ -53,7 +53,7 @@ impl Tick<'_> {
         if !self.input.grip {
             self.event(ClimberEvent::Released);
             self.state.grip_cooldown = GRIP_COOLDOWN;
-            self.state.velocity = self.was;
+            self.state.velocity = self.before.velocity;
             return self.leave(ClimberMode::Falling);
         }
         let now = carried.velocity();
@@ -63,10 +63,13 @@ impl Tick<'_> {
                 // The climber's own pull has changed the velocity of its hands. Along the arms, it does not feel this
                 // change as an acceleration, since the arms pulled between two bodies. Across the arms, an object that
                 // holds the hold may have prevented the change.
-                let changed = before + self.change_by_load() - self.base_was;
+                let changed = before + self.change_by_load() - self.before.base_velocity;
                 let arm = carried.start - carried.motion.previous_position;
                 let along = changed.project_onto_normalized(arm.normalize_or(self.config.up()));
-                (self.base_was + along, self.was - self.base_was)
+                (
+                    self.before.base_velocity + along,
+                    self.before.velocity - self.before.base_velocity,
+                )
             }
             _ => (now, self.struck),
         };
@@ -86,7 +89,10 @@ impl Tick<'_> {
             0.0
         };
         if is_calm && self.state.hanging.calm >= grip.calm_time {
-            let reach = self.began.distance(carried.motion.previous_position);
+            let reach = self
+                .before
+                .position
+                .distance(carried.motion.previous_position);
             let pulled = PULL_IN_SPEED * grip.climb_speed * dt;
             self.state.hanging.arm = (self.state.hanging.arm.min(reach) - pulled).max(0.0);
         }

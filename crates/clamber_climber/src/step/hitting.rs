@@ -35,8 +35,8 @@ impl Tick<'_> {
     /// Pushes the obstacles that kept the body from moving at the velocity `wanted`, except the obstacles that the
     /// climber stands on or holds.
     pub(super) fn push_aside(&mut self, wanted: DVec3) {
-        self.recoil = DVec3::ZERO;
-        self.wanted = wanted;
+        self.motion.recoil = DVec3::ZERO;
+        self.motion.wanted = wanted;
         if self.mover.touched().is_empty() {
             return;
         }
@@ -80,7 +80,7 @@ impl Tick<'_> {
         let share = 1.0 / pushes.len().max(1) as f64;
         pushes.iter_mut().for_each(|push| push.impulse *= share);
         if is_free {
-            self.recoil = -taken * share / self.config.body.mass;
+            self.motion.recoil = -taken * share / self.config.body.mass;
         } else {
             let given = pushes.iter().map(|push| push.impulse).sum();
             self.brace_against(given);
@@ -98,10 +98,13 @@ impl Tick<'_> {
         };
         let normal = touch.normal;
         // The last hit should have slowed the obstacle to the climber's velocity.
-        let asked = before - self.was.dot(normal);
+        let asked = before - self.before.velocity.dot(normal);
         let stays =
             self.slips() || asked <= self.jitter() || before - now < HELD_CHANGE_SHARE * asked;
-        let (wanted, air) = (self.wanted.dot(normal), self.rules.air_velocity.dot(normal));
+        let (wanted, air) = (
+            self.motion.wanted.dot(normal),
+            self.judge.rules.air_velocity.dot(normal),
+        );
         let rests = now - wanted <= self.rests_at();
         stays && (rests || now - air <= air - wanted)
     }
@@ -112,6 +115,7 @@ impl Tick<'_> {
         let normal = touch.normal;
         let is_known = self.presses_on(normal) && self.was_touched(touch);
         let blow = self
+            .judge
             .rules
             .knockback
             .map_or(DVec3::ZERO, |blow| blow.velocity);
@@ -120,7 +124,7 @@ impl Tick<'_> {
         let before = if self.slips() {
             now
         } else {
-            self.base_was.dot(normal)
+            self.before.base_velocity.dot(normal)
         };
         // An obstacle that rests on another one may be lifted with it.
         let is_same = is_known && !is_struck && now <= before + self.rests_at();
@@ -146,18 +150,20 @@ impl Tick<'_> {
     fn presses_on(&self, normal: DVec3) -> bool {
         if self.carried.is_some() {
             let went_on = -self.state.own_way.dot(normal);
-            let own = (self.base_was - self.was).dot(normal) * self.dt();
+            let own = (self.before.base_velocity - self.before.velocity).dot(normal) * self.dt();
             return own > 0.0 && went_on < STOPPED_WAY_SHARE * own;
         }
-        let pressed = self.was_pressed.dot(normal);
-        pressed > SAME_SIDE * self.was_pressed.length() * normal.length()
+        let pressed = self.before.pressed.dot(normal);
+        pressed > SAME_SIDE * self.before.pressed.length() * normal.length()
     }
 
     /// True if the climber touched a contact's material at the start of the tick.
     fn was_touched(&self, touch: &MoverContact) -> bool {
         let body = self.body();
         self.mover.path_of(touch).is_some_and(|path| {
-            let axis = body.at(self.began).nearest_on_axis(path.previous_position);
+            let axis = body
+                .at(self.before.position)
+                .nearest_on_axis(path.previous_position);
             (axis - path.previous_position).dot(touch.normal)
                 <= body.radius + TOUCHED_DISTANCE * body.margin
         })
@@ -172,8 +178,8 @@ impl Tick<'_> {
     /// normal it is no slower than the climber, which has shared its momentum with all obstacles that it hit.
     pub(super) fn velocity_after_hit(&self, touch: &MoverContact, velocity: DVec3) -> DVec3 {
         let normal = touch.normal;
-        let closing = (velocity - self.wanted - self.recoil).dot(normal);
-        let is_hit = self.recoil != DVec3::ZERO
+        let closing = (velocity - self.motion.wanted - self.motion.recoil).dot(normal);
+        let is_hit = self.motion.recoil != DVec3::ZERO
             && closing > 0.0
             && self.is_pushed(touch.obstacle, &touch.contact.material)
             && !self.is_held(touch);

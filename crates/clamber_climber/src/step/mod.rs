@@ -34,7 +34,6 @@ use clamber_mover::{ContactFilters, Mover, MoverBody, MoverMemory};
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
-use crate::climber::StepRules;
 use crate::{
     ClimberConfig, ClimberContact, ClimberError, ClimberEvent, ClimberInput, ClimberMode,
     ClimberState, ContactRule, StepReport,
@@ -80,25 +79,18 @@ pub(crate) struct Asked<'a> {
 pub(crate) struct Tick<'a> {
     config: &'a ClimberConfig,
     input: &'a ClimberInput,
-    rules: &'a StepRules<'a>,
     judge: Judge<'a>,
     obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
     state: &'a mut ClimberState,
     mover: Mover<'a>,
     report: StepReport,
     contacts: &'a mut Vec<ClimberContact>,
-    /// Position at the tick's beginning.
-    began: DVec3,
+    before: Before,
+    motion: Motion,
     /// Position to which the support, or the velocity in the air, takes the climber in this tick.
     expected: DVec3,
     /// Displacement by which the climber gives way to climbers that it overlaps.
     parting: DVec3,
-    /// Velocity at the tick's beginning, including a blow.
-    was: DVec3,
-    /// True if the climber was crushed in the last tick.
-    was_crushed: bool,
-    /// Velocity of the support, or of the frame in the air, at the tick's beginning.
-    base_was: DVec3,
     /// Velocity at which the climber's own momentum is the same as before: a difference from it has a reaction on the
     /// support.
     rides: DVec3,
@@ -111,26 +103,11 @@ pub(crate) struct Tick<'a> {
     on: ContactRule,
     /// Distance by which the arms have drawn the body upwards in this tick, metres.
     drawn_up: f64,
-    /// True if the target of a movement was not finite.
-    is_lost: bool,
-    /// True if the body has made its movement.
-    has_moved: bool,
-    /// True if this movement was through the air.
-    has_flown: bool,
     /// Change of the support's velocity since the last tick, beyond the change by the climber's own recoil; `None` if
     /// it is not known.
     support_change: Option<DVec3>,
     /// Impulse of the arms on the body, if the climber hangs by them.
     pull: Option<DVec3>,
-    /// Change of the climber's velocity by the hits of the last movement. Zero if it hit no obstacle that gives way.
-    recoil: DVec3,
-    /// Velocity that this movement would have had without contacts.
-    wanted: DVec3,
-    /// Displacement by which contacts changed the climber's way in the last tick, if it had no support and touched an
-    /// obstacle then; otherwise zero.
-    was_pressed: DVec3,
-    /// Velocity of the movement through the air before contacts clipped it.
-    flew_at: Option<DVec3>,
     /// True if the current mode began in this tick.
     has_entered: bool,
 }
@@ -140,6 +117,38 @@ pub(crate) fn body(config: &ClimberConfig, state: &ClimberState) -> MoverBody {
     let is_upright = !state.mode.is_holding() && !state.crouched;
     let height = if is_upright { config.body.height } else { 0.0 };
     MoverBody::capsule(config.up() * height, config.body.radius, config.body.margin)
+}
+
+/// The climber at the tick's beginning.
+#[derive(Clone, Copy, Debug)]
+struct Before {
+    position: DVec3,
+    /// Velocity, including a blow.
+    velocity: DVec3,
+    /// Velocity of the support, or of the frame in the air.
+    base_velocity: DVec3,
+    /// True if the climber was crushed in the last tick.
+    crushed: bool,
+    /// Displacement by which contacts changed the climber's way in the last tick, if it had no support and touched an
+    /// obstacle then; otherwise zero.
+    pressed: DVec3,
+}
+
+/// The body's own movement in this tick.
+#[derive(Clone, Copy, Debug, Default)]
+struct Motion {
+    /// True if the target of a movement was not finite.
+    is_lost: bool,
+    /// True if the body has made its movement.
+    is_done: bool,
+    /// True if this movement was through the air.
+    has_flown: bool,
+    /// Change of the climber's velocity by the hits of the last movement. Zero if it hit no obstacle that gives way.
+    recoil: DVec3,
+    /// Velocity that this movement would have had without contacts.
+    wanted: DVec3,
+    /// Velocity of the movement through the air before contacts clipped it.
+    flew_at: Option<DVec3>,
 }
 
 impl<'a> Tick<'a> {
@@ -162,7 +171,7 @@ impl<'a> Tick<'a> {
         let mover = Mover::new(obstacles, dt, &mut scratch.mover)?
             .with_filters(filters)
             .with_character(among_others(config));
-        let was_pressed = if state.support.is_none() && state.untouched == 0.0 {
+        let pressed = if state.support.is_none() && state.untouched == 0.0 {
             state.own_way
         } else {
             DVec3::ZERO
@@ -172,7 +181,6 @@ impl<'a> Tick<'a> {
         Ok(Self {
             config,
             input,
-            rules: judge.rules,
             judge,
             obstacles,
             mover,
@@ -181,27 +189,24 @@ impl<'a> Tick<'a> {
                 ..StepReport::default()
             },
             contacts: &mut scratch.contacts,
-            began: state.position,
+            before: Before {
+                position: state.position,
+                velocity: state.velocity,
+                base_velocity: state.base_velocity,
+                crushed: state.crushed,
+                pressed,
+            },
+            motion: Motion::default(),
             expected: state.position + state.own_displacement(config, dt),
             parting: DVec3::ZERO,
-            was: state.velocity,
-            base_was: state.base_velocity,
             rides: state.velocity,
-            was_crushed: state.crushed,
             state,
             struck: DVec3::ZERO,
             carried: None,
             on: ContactRule::GRIP,
             drawn_up: 0.0,
-            is_lost: false,
-            has_moved: false,
-            has_flown: false,
             support_change: None,
             pull: None,
-            recoil: DVec3::ZERO,
-            wanted: DVec3::ZERO,
-            was_pressed,
-            flew_at: None,
             has_entered: false,
         })
     }
@@ -223,7 +228,7 @@ impl<'a> Tick<'a> {
         self.weigh_down();
         self.list_support();
         self.state.own_way = self.state.position - self.expected;
-        let is_sound = !self.is_lost && self.state.is_finite();
+        let is_sound = !self.motion.is_lost && self.state.is_finite();
         is_sound.then(|| std::mem::take(&mut self.report))
     }
 
@@ -267,7 +272,7 @@ impl<'a> Tick<'a> {
             }
             let is_last = self.report.mode_changes + 1 >= MOST_CHANGES;
             self.change_to(mode);
-            if self.has_moved {
+            if self.motion.is_done {
                 break;
             }
             if is_last {
@@ -275,7 +280,7 @@ impl<'a> Tick<'a> {
                 break;
             }
         }
-        if !self.has_moved {
+        if !self.motion.is_done {
             self.coast();
         }
         self.keep_consistent();

@@ -29,7 +29,7 @@ impl Tick<'_> {
     pub(super) fn path(&self, target: DVec3) -> Path {
         let body = self.body();
         let target = target + self.parting;
-        let crushed = self.was_crushed;
+        let crushed = self.before.crushed;
         match &self.carried {
             Some(carried) => Path {
                 crushed,
@@ -83,8 +83,8 @@ impl Tick<'_> {
 
     /// Records the result of a movement: in the report, the contacts, the pushes, and whether the body is crushed.
     fn note(&mut self, path: &Path, intent: Intent, wanted: DVec3, moved: Moved) -> Moved {
-        self.has_moved = true;
-        self.is_lost |= !path.target.is_finite();
+        self.motion.is_done = true;
+        self.motion.is_lost |= !path.target.is_finite();
         self.report.pushed_out += moved.position - path.target;
         self.report.penetration = moved.penetration;
         self.report.rounds += moved.rounds;
@@ -117,7 +117,7 @@ impl Tick<'_> {
 
     /// Clips the velocity that a movement would have had without contacts, after its hits have changed it.
     pub(super) fn clipped_after_hits(&self, velocity: DVec3) -> DVec3 {
-        self.clipped(velocity + self.recoil)
+        self.clipped(velocity + self.motion.recoil)
     }
 
     /// Carries the body on at its velocity, in ticks in which no mode has moved it.

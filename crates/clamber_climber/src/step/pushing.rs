@@ -120,7 +120,7 @@ impl Tick<'_> {
             self.state.load = 0.0;
             return;
         };
-        if !self.has_flown {
+        if !self.motion.has_flown {
             let response = self.response_of(&attachment, self.config.gravity);
             let borne = if response > 0.0 {
                 self.mass_borne()
@@ -158,7 +158,7 @@ impl Tick<'_> {
         let characters = self.obstacles.iter();
         characters
             .filter_map(|(_, obstacle)| obstacle.character())
-            .filter(|other| other.carried_by.is_some() && other.carried_by == self.rules.id)
+            .filter(|other| other.carried_by.is_some() && other.carried_by == self.judge.rules.id)
             .map(|other| other.mass)
             .sum()
     }

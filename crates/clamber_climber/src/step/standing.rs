@@ -149,7 +149,7 @@ impl Tick<'_> {
     /// its ground gets no reaction.
     fn struck_on_ice(&mut self) -> DVec3 {
         let struck = if self.is_slippery() {
-            self.recoil
+            self.motion.recoil
         } else {
             DVec3::ZERO
         };
@@ -266,9 +266,9 @@ impl Tick<'_> {
         {
             let path = Path::placed(self.body(), ground.position);
             // This is a correction of the same movement, so the hits of that movement are kept.
-            let (wanted, recoil) = (self.wanted, self.recoil);
+            let (wanted, recoil) = (self.motion.wanted, self.motion.recoil);
             let moved = self.slide_at(&path, Intent::Go, wanted);
-            self.recoil += recoil;
+            self.motion.recoil += recoil;
             let ground = Ground {
                 position: moved.position,
                 ..ground
@@ -360,7 +360,7 @@ impl Tick<'_> {
         if !self.is_slippery() {
             return DVec3::ZERO;
         }
-        let kept = self.was - carried.velocity();
+        let kept = self.before.velocity - carried.velocity();
         let change = self.own_velocity() - kept;
         let along = change - normal * change.dot(normal);
         self.rides -= along;

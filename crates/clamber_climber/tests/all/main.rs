@@ -1,4 +1,5 @@
-//! Climbers on skin, on bodies and on each other. Run one topic with `cargo test -p clamber_climber --test all climbing`.
+//! Climbers on skin, on bodies and on each other. Run one topic with `cargo test -p clamber_climber --test all
+//! climbing`.
 
 #![allow(
     clippy::unwrap_used,

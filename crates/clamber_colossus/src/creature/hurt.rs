@@ -254,8 +254,9 @@ impl Creature {
         Some(self.surface.world_from_model().transform_point(place))
     }
 
-    /// True if a weak point can be hurt now. It must have hit points left. Also, the current state must expose it, or
-    /// all weak points of lower order must be used up.
+    /// True if a hit would hurt a weak point now: it has hit points left, and either the current state exposes it, or
+    /// all weak points of lower order are used up, so one of the lowest order is always open. False if there is no such
+    /// weak point.
     pub fn is_open(&self, weak_point: usize) -> bool {
         let points = self.kind.weak_points();
         let hit_points = self.state.hit_points();

@@ -79,6 +79,19 @@ pub(super) struct PutLeg {
     pub(super) is_planted: bool,
 }
 
+/// Heights of a swinging foot in its clip at [`SWING_SHARES`] of the time until it lands, in world space. `time` is the
+/// clip's, and the foot lands in `wait` seconds of it.
+fn heights_ahead(
+    world: &Similarity,
+    contacts: &Contacts,
+    [time, wait]: [f64; 2],
+) -> [f64; SWING_SHARES.len()] {
+    SWING_SHARES.map(|share| {
+        let time = (time + wait * share).rem_euclid(contacts.duration());
+        world.transform_point(contacts.ball(time)).y
+    })
+}
+
 impl Creature {
     /// Puts the feet of the pose on the ground, and moves the hips so that the legs reach them.
     pub(super) fn put_feet(&mut self, world: &Similarity, ground: &Ground<'_>, dt: f64) {
@@ -247,12 +260,9 @@ impl Creature {
         };
         let past = (!stands).then(|| self.past_others(index, forward));
         let aside = past.map_or(aside, |past| aside + past);
-        let ahead = SWING_SHARES.map(|share| {
-            let place = contacts.zip(landing).map(|(contacts, (wait, _))| {
-                let time = (time + wait * share).rem_euclid(contacts.duration());
-                world.transform_point(contacts.ball(time))
-            });
-            place.unwrap_or(clip).y
+        let swing = contacts.zip(landing.map(|(wait, _)| wait));
+        let ahead = swing.map_or([clip.y; SWING_SHARES.len()], |(contacts, wait)| {
+            heights_ahead(world, contacts, [time, wait])
         });
         FootGoal {
             clip,

@@ -71,14 +71,15 @@ impl Creature {
         self.swap_state(&mut state)
     }
 
-    /// Sends the creature to a place, regardless of its brain; `None` calls it back. Its current act ends at once. It
-    /// walks around obstacles and may leave its arena; the height of the place does not count. Its brain still changes
-    /// states on the way, but their acts begin only after the errand, whose end [`CreatureEvent::Arrived`] or
-    /// [`CreatureEvent::Stopped`] reports.
+    /// Sends the creature to a place, regardless of its brain. Its current act ends at once. It walks around obstacles
+    /// and may leave its arena; the height of the place does not count. Its brain still changes states on the way, but
+    /// their acts begin only after the errand, whose end [`CreatureEvent::Arrived`] or [`CreatureEvent::Stopped`]
+    /// reports. `None` ends the errand where the creature is, and gives it back to its brain without an event; it
+    /// always succeeds.
     ///
-    /// A creature on its way may be sent elsewhere in each tick: it goes on, and searches for a way no more often than
-    /// otherwise. Returns false and changes nothing if the creature cannot walk, if its brain is in a final state, or
-    /// if the place is not finite or beyond 1e12 m.
+    /// A creature on its way may be sent elsewhere in each tick: it goes on, and searches for a way as often as on a
+    /// single errand. Returns false and changes nothing if the creature cannot walk, if its brain is in a final state,
+    /// or if a coordinate of the place is not finite or beyond 1e12 m.
     pub fn send(&mut self, to: Option<DVec3>) -> bool {
         let is_far = |place: DVec3| !place.is_finite() || place.abs().max_element() > MOST_SENT;
         let is_over = self.kind.brain().is_final(self.state.brain.current());

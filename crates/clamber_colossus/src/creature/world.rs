@@ -32,7 +32,7 @@ pub struct Person {
 pub struct Riding {
     /// Point of the creature's skin that the person stands on or holds: the `material` of a climber's support.
     pub at: MaterialPoint,
-    /// True if the person hangs, rather than stands or grips.
+    /// True if the person hangs by its hands from a grip: not while it stands, climbs, or hangs from a ledge.
     pub hangs: bool,
 }
 

@@ -17,7 +17,7 @@ pub struct BodyFile {
     /// Additions to clips, by the clips' names.
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub clips: BTreeMap<String, ClipFile>,
-    /// Weak points in addition to the ones in the creature's own file.
+    /// Weak points in addition to those in the creature's model file. They come after those.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub weak_points: Vec<WeakPointFile>,
     /// The legs.
@@ -47,8 +47,9 @@ pub struct BodyFile {
     /// any size. `None` plays clips at their own speed at any size.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub made_for: Option<f64>,
-    /// Largest acceleration at the hips when a clip passes its marker `impact`, metres a second squared: from 0 to 20,
-    /// 2.5 by default. A step gives 15 % of it.
+    /// Strength of the jolt, up and down at the creature's hips, when a clip passes its marker `impact`: nominally the
+    /// largest acceleration of the swing that follows, metres a second squared. From 0 to 20, 2.5 by default. A
+    /// footfall gives 15 % of it; jolts at the same time add up.
     #[serde(default = "tremor")]
     pub tremor: f64,
 }
@@ -170,7 +171,8 @@ pub struct WeakPointFile {
     pub radius: f64,
     /// Damage that uses it up, more than 0.
     pub hit_points: f64,
-    /// True if the creature dies when the weak point is used up.
+    /// True if the creature's health is 0 once this weak point is used up, whatever the others have left. Without a
+    /// major one, health is 0 once all weak points are used up.
     #[serde(default, skip_serializing_if = "is_false")]
     pub major: bool,
     /// The weak point is hidden until all weak points of lower order are used up. `None` means 0, and 1 for a major

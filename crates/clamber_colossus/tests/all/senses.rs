@@ -221,3 +221,45 @@ fn who_is_gone_rides_no_longer() {
         assert_eq!(seconds > 0.9, riders > 0.0, "{seconds}");
     }
 }
+
+/// Only riders that hang count: not those that stand or grip, and not those that hang elsewhere.
+#[test]
+fn riders_that_hang_are_counted_among_the_riders() {
+    let kind = kind(&brain_file());
+    let terrain = level_ground();
+    let at = DVec3::Y * 30.0;
+    let rider = |id: u64, hangs: bool| Person {
+        id,
+        riding: Some(Riding {
+            hangs,
+            ..on_chest(&kind)
+        }),
+        ..support::person(at)
+    };
+    let beside = Person {
+        id: 9,
+        ..person(at, None)
+    };
+    for hangs in [
+        vec![],
+        vec![false],
+        vec![true],
+        vec![false, true, true],
+        vec![true, true, false, false, true],
+    ] {
+        let riders = (0..).zip(&hangs).map(|(id, hangs)| rider(id, *hangs));
+        let people: Vec<Person> = riders.chain([beside]).collect();
+        let mut giant = alone(&kind, 1);
+        giant.step(&with_people(&terrain, &people)).unwrap();
+        let senses = giant.state().senses();
+        let found = [Sense::Riders, Sense::RidersHanging].map(|sense| senses.get(sense));
+        let hanging = hangs.iter().filter(|hangs| **hangs).count();
+        assert_eq!(found, [hangs.len() as f64, hanging as f64], "{hangs:?}");
+        // A rider that takes hold again, or is gone, hangs no longer.
+        giant
+            .step(&with_people(&terrain, &[rider(0, false)]))
+            .unwrap();
+        let after = giant.state().senses().get(Sense::RidersHanging);
+        assert_eq!(after, 0.0, "{hangs:?}");
+    }
+}

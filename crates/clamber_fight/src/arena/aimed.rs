@@ -10,7 +10,7 @@ use crate::fighter::{Around, FighterId, StabTarget};
 /// A point of a creature's skin at which a stab aims.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aimed {
-    /// The creature.
+    /// The creature whose skin the stab would hit.
     pub creature: CreatureId,
     /// The point of the creature's skin.
     pub at: MaterialPoint,

@@ -136,12 +136,13 @@ impl Arena {
         Ok(self.join_creature(member))
     }
 
-    /// Adds a fighter before the first step, at rest in the air. `position` is the centre of its climber's ball, and
-    /// its spawn point after a death. After the first step, use [`Order::AddFighter`].
+    /// Adds a fighter before the first step, in the air and without velocity: it falls. `position` is the centre of its
+    /// climber's ball, and its spawn point after a death. If that place is not free in the first step, the fighter is
+    /// moved aside; the spawn point stays. After the first step, use [`Order::AddFighter`].
     ///
     /// # Errors
-    /// [`ArenaError::Begun`] after the first step, [`ArenaError::OutOfRange`] and [`ArenaError::Climber`] for a
-    /// configuration outside its ranges, or a position that is not finite.
+    /// [`ArenaError::Begun`] after the first step, [`ArenaError::OutOfRange`] for numbers of its weapons outside their
+    /// ranges, and [`ArenaError::Climber`] for its climber's configuration, or a position that is not finite.
     pub fn add_fighter(
         &mut self,
         config: FighterConfig,
@@ -309,8 +310,8 @@ impl Arena {
         self.projectiles.get(found)
     }
 
-    /// Hash of the arena's configuration. Peers over a network have the same hash; [`Arena::fingerprint`] compares
-    /// everything else.
+    /// Hash of the [`ArenaConfig`] alone: peers over a network, saved states and recordings must agree on it.
+    /// [`Arena::fingerprint`] covers creatures and fighters with their configurations; neither covers terrain.
     pub fn config_hash(&self) -> u64 {
         hash_of(0, &self.config)
     }

@@ -25,7 +25,7 @@ pub struct ArenaState {
     pub projectiles: Vec<Projectile>,
     /// The number that the next projectile gets.
     pub next_projectile: u64,
-    /// Noises that creatures hear in the next step.
+    /// Noises of the last step's impacts, which creatures hear in the next step.
     pub noises: Vec<Noise>,
 }
 

@@ -9,7 +9,7 @@ use crate::error::{ArenaError, not_negative, positive, within};
 pub struct FighterConfig {
     /// Body and abilities.
     pub climber: ClimberConfig,
-    /// The sword.
+    /// The sword; `None` for a fighter without one.
     pub sword: Option<SwordConfig>,
     /// The bow.
     pub bow: Option<BowConfig>,
@@ -86,8 +86,8 @@ pub struct BowConfig {
     pub depth: f64,
     /// Damage of an arrow at full speed; 0.05 by default. It is proportional to the arrow's energy.
     pub damage: f64,
-    /// Largest angle by which an arrow strays, radians for each metre a second of the archer's own motion; 0.004 by
-    /// default.
+    /// Largest angle by which an arrow strays, radians for each metre a second at which the archer moves relative to
+    /// what carries it; 0.004 by default. An arrow never strays by more than 0.5 radians.
     pub stray: f64,
     /// Number of arrows at first, and again after each respawn; `None`, the default, for unlimited arrows.
     pub arrows: Option<u32>,
@@ -111,7 +111,8 @@ pub struct StoneConfig {
 /// Harm by being crushed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CrushConfig {
-    /// Missing room that does no harm, metres; 0.05 by default.
+    /// How much room may be missing between obstacles, beyond the climber's margin, before it does harm, metres; 0.05
+    /// by default.
     pub depth: f64,
     /// Hit points lost per second; 1 by default.
     pub damage: f64,

@@ -8,7 +8,8 @@ use glam::{DMat3, DQuat, DVec3};
 pub struct FighterFrame {
     /// Centre of the climber's ball, in world space.
     pub origin: DVec3,
-    /// The body's rotation: x is its right, y is up, and -z is ahead.
+    /// The body's rotation in world space: x is its right, y is up, and -z is ahead. A model that looks along +Z has to
+    /// be turned round.
     pub rotation: DQuat,
 }
 

@@ -29,9 +29,9 @@ impl SwordConfig {
 }
 
 impl Fighter {
-    /// The point of skin that a stab would hit: ahead of the feet, or in front of the hands on a hold. [`StabTarget::Air`]
-    /// without a sword, if no skin is in reach, or if terrain or another creature is in between. The attachment's
-    /// offset is a unit vector into the skin.
+    /// The point of skin that a stab would hit: ahead of the feet, or in front of the hands on a hold.
+    /// [`StabTarget::Air`] without a sword, if no skin is in reach, or if terrain or another creature is in between.
+    /// The attachment's offset is a unit vector into the skin.
     pub(crate) fn stab_target(&self, around: &Around<'_>) -> StabTarget {
         let Some(sword) = &self.config.sword else {
             return StabTarget::Air;

@@ -97,7 +97,7 @@ pub enum WeaponAction {
     },
 }
 
-/// Target of a stab.
+/// Where a stab goes. The fighter chooses it; a game only reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum StabTarget {
     /// Not chosen yet: it is chosen at the end of this tick.

@@ -187,17 +187,7 @@ impl Approach {
         };
         let patch = &graph.patches()[graph.entries()[entry].patch];
         let toward = level(view.spot(patch).point - state.position);
-        let keeps = match view.danger {
-            Danger::None => 0.0,
-            _ => config.keeps_away * view.climber.config().body.radius,
-        };
-        let away = toward.length() - keeps;
-        let ahead = if away.abs() > KEPT_DISTANCE_TOLERANCE * view.climber.config().body.radius {
-            away.signum()
-        } else {
-            0.0
-        };
-        let walk = toward.normalize_or_zero() * ahead;
+        let (walk, keeps) = approach(toward, config, view);
         let kept = BLOCKED_SPEED_SHARE * view.climber.config().ground.walk_speed;
         if walk == DVec3::ZERO || state.velocity.length() > kept {
             self.free = seconds;
@@ -448,6 +438,22 @@ fn strength(config: &BotConfig, view: &View<'_>) -> f64 {
         now
     };
     (then - config.reserve).max(0.0)
+}
+
+/// How the bot walks to a place, and how far from it the bot keeps, metres.
+fn approach(toward: DVec3, config: &BotConfig, view: &View<'_>) -> (DVec3, f64) {
+    let radius = view.climber.config().body.radius;
+    let keeps = match view.danger {
+        Danger::None => 0.0,
+        _ => config.keeps_away * radius,
+    };
+    let away = toward.length() - keeps;
+    let ahead = if away.abs() > KEPT_DISTANCE_TOLERANCE * radius {
+        away.signum()
+    } else {
+        0.0
+    };
+    (toward.normalize_or_zero() * ahead, keeps)
 }
 
 /// True if the bot has the stamina to get on.

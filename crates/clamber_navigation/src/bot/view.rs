@@ -37,7 +37,8 @@ pub struct View<'a> {
     /// are made on it now and then, so it may be a rough guess. But a jump from one part of the creature to another
     /// relies on the next second or two. With [`Forecast::still`], the bot judges jumps by the motion that it sees.
     pub forecast: &'a Forecast,
-    /// The danger for a climber on the ground.
+    /// How dangerous the creature is now to a climber on the ground; the game sets it. Unless it is [`Danger::None`],
+    /// the bot keeps away from the creature. While the creature attacks, the bot runs away.
     pub danger: Danger,
     /// The hardest shake that the climber's place is about to get, metres per second squared:
     /// [`FutureSkin::shake_ahead`](crate::FutureSkin::shake_ahead), half a second ahead in steps of a tenth. With 0 the

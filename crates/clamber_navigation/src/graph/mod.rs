@@ -48,9 +48,9 @@ impl ClimbGraph {
     /// `progress` is called repeatedly. If it returns [`ControlFlow::Break`], the build is cancelled.
     ///
     /// # Errors
-    /// [`NavigationError`] if a number of the configuration is out of its range, if a plate has a triangle that the skin
-    /// does not have, if the creature has no skin or cannot be posed, if it has too many patches or too long clips, and
-    /// if the caller cancels.
+    /// [`NavigationError`] if a number of the configuration is out of its range, if a plate has a triangle that the
+    /// skin does not have, if the creature has no skin or cannot be posed, if it has too many patches or too long
+    /// clips, and if the caller cancels.
     pub fn build(
         rig: &Rig,
         config: &GraphConfig,
@@ -87,8 +87,9 @@ impl ClimbGraph {
         &self.patches
     }
 
-    /// The patches onto which a climber gets from the ground. Holds that a jump passes too fast for hands to catch are
-    /// left out.
+    /// The patches onto which a climber gets from the ground by hand or by a jump, with the creature at rest. Left out
+    /// are patches on which a climber can only hold on, if a jump passes them faster than hands catch
+    /// ([`GripConfig::catch_speed`](clamber_climber::GripConfig::catch_speed)).
     pub fn entries(&self) -> &[Entry] {
         &self.entries
     }

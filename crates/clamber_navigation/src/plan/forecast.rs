@@ -36,10 +36,11 @@ impl Forecast {
         self.slices.is_empty()
     }
 
-    /// Appends a clip. `from` is the time in the clip at which it begins, in seconds of the file; `seconds` is for how
-    /// long it plays, in seconds of the world, an hour at most. Both are rounded to half seconds. The clip is looped,
-    /// with its length rounded up to half seconds. A forecast ends after four hours. A clip that the graph does not
-    /// know, a negative `from` and `seconds` that are not positive change nothing. A forecast is valid only for its own
+    /// Appends a clip, looped. `from` is where in the clip it begins, in seconds of the file; beyond the clip's end it
+    /// wraps round. `seconds` is for how long it plays, in seconds of the world; more than an hour counts as an hour.
+    /// Both become whole half seconds of the world, the nearest, and at least one for `seconds`; the clip's length is
+    /// rounded up to half seconds. What goes beyond four hours in all is dropped. A clip that the graph does not know,
+    /// a negative `from` and `seconds` that are not positive change nothing. A forecast is valid only for its own
     /// graph: another graph reads other clips from it.
     #[must_use]
     pub fn then(mut self, graph: &ClimbGraph, clip: &str, from: f64, seconds: f64) -> Self {

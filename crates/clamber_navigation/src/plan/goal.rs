@@ -148,7 +148,9 @@ impl Step {
 }
 
 impl ClimbGraph {
-    /// The patches whose middles are within `radius` metres of a place in the world, with the creature at rest.
+    /// The patches whose middles are within `radius` metres of a place in the world, in ascending order. The creature
+    /// is taken to be at rest where [`GraphConfig::world_from_model`](crate::GraphConfig::world_from_model) puts it,
+    /// not where a living creature is now.
     pub fn patches_near(&self, place: DVec3, radius: f64) -> Vec<usize> {
         let near = |patch: &usize| self.patches[*patch].point.distance(place) <= radius;
         (0..self.patches.len()).filter(near).collect()

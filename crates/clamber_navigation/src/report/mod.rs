@@ -67,13 +67,14 @@ pub struct PointReport {
     pub reachable: bool,
     /// Seconds that it takes, rests included; `None` if the point is not reachable.
     pub seconds: Option<f64>,
-    /// Stamina that is left there; `None` if the point is not reachable.
+    /// Stamina, 0 to 1, with which a climber arrives there if it starts on the ground with full stamina and takes the
+    /// fastest way; `None` if the point is not reachable.
     pub stamina: Option<f64>,
-    /// The obstacle if the point is not reachable; `None` if it is.
+    /// The reason if the point is not reachable; `None` if it is.
     pub missing: Option<Missing>,
 }
 
-/// The obstacle that keeps a climber from a weak point.
+/// Why a climber does not reach a weak point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]

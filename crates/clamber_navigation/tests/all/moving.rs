@@ -136,8 +136,8 @@ fn what_is_looked_at_grows_with_the_skin_and_not_with_its_triangles() {
     assert!(grows(fine.2, coarse.2) <= 2.0, "{coarse:?} {fine:?}");
 }
 
-/// A bot climbs on a surface above level ground at height 0, at 60 ticks a second. `look` sees each tick after the bot has
-/// chosen its input, and ends the run by returning true.
+/// A bot climbs on a surface above level ground at height 0, at 60 ticks a second. `look` sees each tick after the bot
+/// has chosen its input, and ends the run by returning true.
 fn climbs(
     (bot, who): (&mut Bot, &mut Climber),
     surface: &SkinnedSurface,

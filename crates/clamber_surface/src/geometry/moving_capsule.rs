@@ -88,8 +88,8 @@ impl MovingCapsule {
     ///
     /// The time of the contact is never later than the first touch, and for valid input `None` guarantees that there is
     /// no touch up to `limit`. A `limit` above 1 counts as 1. At the time of the contact the distance is at most the
-    /// radius plus `tolerance`, unless the contact is [undecided](TriangleContact::undecided). A tolerance below 2^-45 of
-    /// the lengths involved counts as 2^-45 of them. The triangle is hit from both sides and may have collapsed.
+    /// radius plus `tolerance`, unless the contact is [undecided](TriangleContact::undecided). A tolerance below 2^-45
+    /// of the lengths involved counts as 2^-45 of them. The triangle is hit from both sides and may have collapsed.
     ///
     /// `None` as well if a number is not finite or larger than 2^100, or if radius, `tolerance` or `limit` is negative.
     pub fn cast_at_triangle(

@@ -20,7 +20,8 @@ pub enum SurfaceKind {
 pub struct SurfaceTag {
     /// The material.
     pub kind: SurfaceKind,
-    /// A number for the game, such as a sound material or a surface id. 0 by default; nothing here reads it.
+    /// A number for the game, such as a sound material or a surface id. 0 by default. This crate does not read it;
+    /// plates of a `clamber_colossus` brain and the game's rules do.
     pub user: u32,
 }
 

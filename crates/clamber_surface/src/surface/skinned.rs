@@ -143,8 +143,8 @@ impl SkinnedSurface {
     /// For a creature that is neither touched nor drawn: its clips, its palette and [`SkinnedSurface::advance`] can be
     /// skipped. Queries still work. Costs O(joints), once.
     ///
-    /// To wake the surface, [`SkinnedSurface::teleport`] it where it is by then. `advance` would take the whole way since
-    /// it fell asleep for the motion of one tick.
+    /// To wake the surface, [`SkinnedSurface::teleport`] it where it is by then. `advance` would take the whole way
+    /// since it fell asleep for the motion of one tick.
     pub fn sleep(&mut self) {
         let Instance {
             mesh,

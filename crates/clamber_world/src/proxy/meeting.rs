@@ -38,8 +38,8 @@ pub struct ProxyShare {
     /// The impulse to give to the body at the touched point, newton seconds. It gives back the impulse that a climber
     /// of its mass does not take.
     pub body: DVec3,
-    /// The impulse that the climber gets, newton seconds, for `Climber::knockback_of`; `None` if the impact is too slow to
-    /// be felt.
+    /// The impulse that the climber gets, newton seconds, for `Climber::knockback_of`; `None` if the impact is too slow
+    /// to be felt.
     pub climber: Option<DVec3>,
     /// Displacement to give to the body, metres. It undoes the part of the engine's displacement that the climber's own
     /// motion caused, because the climber pushes by its own rules.

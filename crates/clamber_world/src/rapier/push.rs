@@ -50,8 +50,8 @@ pub fn apply_push(
     }
 }
 
-/// [`Obstacle::inverse_effective_mass`](crate::Obstacle::inverse_effective_mass) of a rapier world. Joints are ignored: a jointed body
-/// responds as if it were free.
+/// [`Obstacle::inverse_effective_mass`](crate::Obstacle::inverse_effective_mass) of a rapier world. Joints are ignored:
+/// a jointed body responds as if it were free.
 pub(super) fn inverse_effective_mass(
     bodies: &RigidBodySet,
     colliders: &ColliderSet,

@@ -46,7 +46,8 @@ fn precedes(one: &Touch, other: &Touch) -> bool {
 ///
 /// The reported fraction is never later than the true one. The distance at that time is at most the radius plus
 /// [`WorldCapsule::sweep_tolerance`], unless the solver cannot certify a distance (see
-/// [`SweepHit::undecided`](clamber_surface::surface::SweepHit::undecided)). Triangles are two-sided. Finds nothing if a coordinate is not finite or beyond 2^100, or if the radius is negative.
+/// [`SweepHit::undecided`](clamber_surface::surface::SweepHit::undecided)). Triangles are two-sided. Finds nothing if a
+/// coordinate is not finite or beyond 2^100, or if the radius is negative.
 pub fn sweep_shape(
     shape: &dyn Shape,
     sweep: &ShapeSweep,

@@ -216,7 +216,8 @@ impl Watch {
         checks
     }
 
-    /// Checks the climber, which is the battle's or one in another state. Returns the drift, metres, where it is defined.
+    /// Checks the climber, which is the battle's or one in another state. Returns the drift, metres, where it is
+    /// defined.
     ///
     /// For a rider that stands without input (`idle`): the distance of its contact from the recorded material point, or
     /// the depth of its body in that point if larger. For a climber in a climb, or that holds on, and may be shoved

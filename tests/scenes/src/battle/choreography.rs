@@ -1,5 +1,5 @@
-//! The timetable of a creature in a ride: which clip plays when, and where the creature is. It depends only on the ticks
-//! that have passed.
+//! The timetable of a creature in a ride: which clip plays when, and where the creature is. It depends only on the
+//! ticks that have passed.
 
 use clamber_animation::SeamProbe;
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};

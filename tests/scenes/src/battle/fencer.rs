@@ -76,7 +76,8 @@ impl Fencer {
         }
     }
 
-    /// The vector from the point that the blade would hit to the weak point; `None` if there is no skin before the blade.
+    /// The vector from the point that the blade would hit to the weak point; `None` if there is no skin before the
+    /// blade.
     pub(super) fn miss(&self, arena: &Arena, target: &Target) -> Option<DVec3> {
         let place = giant(arena).weak_point(target.weak_point)?;
         let aimed = arena.stab_aim(HERO, &[])?;

@@ -41,8 +41,8 @@ pub struct BattleOptions {
     #[arg(long, value_name = "FILE")]
     pub brain: Option<PathBuf>,
 
-    /// Height of the creature [default: that of the file of --brain; without one 40 for the giant, and 20 for a creature
-    /// from a file].
+    /// Height of the creature [default: that of the file of --brain; without one 40 for the giant, and 20 for a
+    /// creature from a file].
     #[arg(long, value_name = "METRES")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub height: Option<f64>,

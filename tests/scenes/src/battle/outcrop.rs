@@ -82,8 +82,8 @@ pub(super) struct Crossing {
 }
 
 impl Crossing {
-    /// The input on the way over the outcrop, or around it once the climber has crossed it; `None` where it is not in the
-    /// way. An attacked climber steps back from the wall.
+    /// The input on the way over the outcrop, or around it once the climber has crossed it; `None` where it is not in
+    /// the way. An attacked climber steps back from the wall.
     pub(super) fn input(
         &mut self,
         climber: &Climber,

@@ -1,6 +1,6 @@
 //! How a clip is repeated. One that is not a loop is played to its end and back again, so that all poses come from the
-//! file and nothing jumps. (`SkinnedSurface::teleport` at the seam would report no motion either, but it teleports whatever
-//! stands on the skin, and rides exist to test carrying.)
+//! file and nothing jumps. (`SkinnedSurface::teleport` at the seam would report no motion either, but it teleports
+//! whatever stands on the skin, and rides exist to test carrying.)
 
 use clamber_animation::Seam;
 

@@ -49,8 +49,8 @@ const STEP: f64 = 0.5;
 /// Slope of the skin ahead up to which a patrol walks on, radians.
 const WALKABLE: f64 = 0.6;
 
-/// Speed of skin relative to the creature as a whole up to which a rider jumps from it, metres a second: the jump takes a
-/// second, in which the rider cannot steer.
+/// Speed of skin relative to the creature as a whole up to which a rider jumps from it, metres a second: the jump takes
+/// a second, in which the rider cannot steer.
 const JUMP_SPEED: f64 = 0.4;
 /// Shake of the skin up to which a rider jumps from it, metres a second squared.
 const JUMP_SHAKE: f64 = 3.0;

@@ -44,8 +44,8 @@ pub struct Rockfall {
     pub report: DebrisReport,
     /// How often a rock was knocked out of the valley, where there is no ground.
     pub left: u32,
-    /// Rocks that were found inside the creature without being caught, as under a foot, or below the ground, in the last
-    /// tick: index, place and kind of the fault.
+    /// Rocks that were found inside the creature without being caught, as under a foot, or below the ground, in the
+    /// last tick: index, place and kind of the fault.
     pub faults: Vec<(usize, DVec3, &'static str)>,
 }
 

@@ -102,8 +102,8 @@ impl<'a> Battle<'a> {
     /// creature's back, and rocks above the back.
     ///
     /// # Errors
-    /// [`SceneError`] if the creature has no skin to be dropped on, is flat, or cannot be climbed up to a weak point; or
-    /// if a file cannot be read.
+    /// [`SceneError`] if the creature has no skin to be dropped on, is flat, or cannot be climbed up to a weak point;
+    /// or if a file cannot be read.
     pub fn new(creature: &'a Creature, options: &BattleOptions) -> Result<Self, SceneError> {
         let (height, seed) = (options.height(), options.seed);
         let perch = |surface: &SkinnedSurface| {

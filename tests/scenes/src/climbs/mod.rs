@@ -1,6 +1,7 @@
 //! A climber on a creature that moves.
 //!
-//! A route from [`Ways::climb`] leads along the edges of the skin, from a foot to the head, for a climber that does not plan.
+//! A route from [`Ways::climb`] leads along the edges of the skin, from a foot to the head, for a climber that does not
+//! plan.
 
 mod route;
 mod stage;

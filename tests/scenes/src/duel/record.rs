@@ -22,8 +22,8 @@ const PLAYERS: [&str; 2] = ["rider", "archer"];
 /// Half the length of the drawn ground's sides, metres.
 const DRAWN: f32 = 100.0;
 
-/// Steps a duel anew with the inputs and orders of all its ticks, and records it to a file. Gives the fingerprint of the last
-/// tick.
+/// Steps a duel anew with the inputs and orders of all its ticks, and records it to a file. Gives the fingerprint of
+/// the last tick.
 ///
 /// A peer of a rollback session calls it at the end: only then all of its inputs are certain.
 pub fn record(

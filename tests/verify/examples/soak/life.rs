@@ -1,5 +1,5 @@
-//! The giant's life in fast forward, in a valley with boulders and walls: five riders wander and climb on it, arrows and
-//! blades hit it, and the game sends it away when the riders have left it. When it dies, the next giant lives.
+//! The giant's life in fast forward, in a valley with boulders and walls: five riders wander and climb on it, arrows
+//! and blades hit it, and the game sends it away when the riders have left it. When it dies, the next giant lives.
 
 #[path = "rider.rs"]
 mod rider;

@@ -134,11 +134,21 @@ impl Tick<'_> {
         if after < 1.0 {
             return NextMode::Stay;
         }
+        self.end_on_top(carried, moved.position, before)
+    }
+
+    /// Ends a pull-up on the top of the ledge: stands there, or grips it if it is too steep. `before` is the progress a
+    /// tick ago, at which the climber waits if there is no room.
+    fn end_on_top(&mut self, carried: &Carried, position: DVec3, before: f64) -> NextMode {
         // The climber ends a margin above the top.
-        let reach = self.config.ground.snap_distance.max(2.0 * body.margin);
-        let Some(ground) = self.ground_below(moved.position, reach) else {
+        let reach = self
+            .config
+            .ground
+            .snap_distance
+            .max(2.0 * self.body().margin);
+        let Some(ground) = self.ground_below(position, reach) else {
             // If the top is too steep to stand on, grip it, or lose the ledge.
-            let gripped = self.grip_at(moved.position);
+            let gripped = self.grip_at(position);
             return gripped.unwrap_or_else(|| self.lose_footing());
         };
         if !self.is_corrected_clear(carried, ground.position) {

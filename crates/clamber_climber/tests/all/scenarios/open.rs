@@ -4,8 +4,8 @@
 /// setting`), and the result.
 ///
 /// A listed scenario that passes fails the suite, so that a fix also removes its lines. `CLAMBER_OPEN=1 cargo test -p
-/// clamber_climber --test all scenarios -- --nocapture | grep '^OPEN ' | cut -c6- | sort` prints the lines that the file
-/// should have.
+/// clamber_climber --test all scenarios -- --nocapture | grep '^OPEN ' | cut -c6- | sort` prints the lines that the
+/// file should have.
 const OPEN: &str = include_str!("open.txt");
 
 /// Scenario and setting of each line.
