@@ -21,7 +21,8 @@ macro_rules! use_each {
 
 use_each! {
     Affine Anchor Attachment BodyConfig BodyPoses CastOptions Climber ClimberConfig ClimberContact
-    ClimberError ClimberEvent ClimberGroup ClimberInput ClimberMode ClimberProxy ClimberState Clip ColliderMesh
+    ClimberError ClimberEvent ClimberGroup ClimberInput ClimberMode ClimberProxy ClimberState Clip ColliderBuildOptions
+    ColliderMesh
     ContactPhase ContactQuery ContactRule CustomMode Debris DebrisConfig GripConfig Influence JointId MaterialPoint
     MeshSource ModeContext Motion NextMode Obstacle ObstacleId Others Palette Playback PointMotion PoseClock PoseTrack
     RapierTerrain Rig Similarity Skeleton SkinnedSurface StepReport StepRules Support SurfaceHit SurfaceKind SurfacePoint
