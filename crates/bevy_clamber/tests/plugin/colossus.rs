@@ -347,8 +347,8 @@ fn a_changed_file_changes_it_while_it_lives() {
     std::fs::remove_dir_all(folder).unwrap();
 }
 
-/// A giant far from the world's origin throws a stone that bursts, which an app hears of, in its own space: it is at
-/// the climber then, who is struck.
+/// A giant far from the world's origin throws a stone at a climber. An app is told where it bursts, in the app's space:
+/// at the climber, which is struck.
 #[test]
 fn it_throws_stones_that_burst() {
     let mut app = app(&std::env::temp_dir(), TICK);

@@ -67,8 +67,8 @@ fn said(arguments: &[&str], code: i32) -> String {
     if code == 2 { errors } else { output }
 }
 
-/// Compares a recording with others. Each row has another recording, the code that the command ends with, and what it
-/// says.
+/// Compares a recording with others. Each row is one comparison: the path of the other recording, the exit code, and a
+/// part of the output.
 fn compares(first: &str, rows: &[(String, i32, &str)]) {
     for (other, code, told) in rows {
         let text = said(&["compare", first, other], *code);

@@ -23,7 +23,7 @@ pub enum NextMode {
 /// A custom mode: a mode of the game's own, such as a dash, a vault, a wall run or swimming.
 ///
 /// Handlers are given to every [`Climber::step_with`](crate::Climber::step_with), and keep no state of their own. A
-/// mode stores what it remembers in [`ModeContext::custom_slots`], which is part of the climber's state, so that it is
+/// mode keeps its numbers in [`ModeContext::custom_slots`]. These slots are part of the climber's state, so they are
 /// recorded, saved and rolled back with it.
 pub trait CustomMode {
     /// Id of the mode, unique among the game's modes. The climber's mode is [`ClimberMode::Custom`] with this id.

@@ -60,7 +60,8 @@ impl Arena {
 
     /// [`Arena::step`] with [`Order`]s and the game's own contact rules and custom modes. Orders are followed first.
     /// `inputs` has one input for each fighter before the orders; a fighter that joins by an order is idle in this
-    /// step. The arena ignores [`StepRules::id`] and gives each climber its own [`fighter_obstacle`].
+    /// step. The arena ignores [`StepRules::id`] and [`StepRules::knockback`]: it gives each climber its own
+    /// [`fighter_obstacle`], and deals the blows itself. [`Order::Strike`] is a blow by the game.
     ///
     /// # Errors
     /// Those of [`Arena::step`]. [`ArenaError::Order`] for an order that cannot be followed and [`ArenaError::Climber`]

@@ -52,7 +52,7 @@ struct Outcome {
 }
 
 impl Outcome {
-    /// Runs a tick that starts at `time`, and notes what it took.
+    /// Runs a tick that starts at `time`, and adds its duration to the list.
     fn tick(
         &mut self,
         body: &mut Body,

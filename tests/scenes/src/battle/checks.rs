@@ -130,7 +130,7 @@ pub struct Watch {
     found: BTreeMap<&'static str, (f64, Option<String>)>,
 }
 
-/// A battle, and the place of what is checked.
+/// A battle, and where in the world the checked thing is.
 type At<'a> = (&'a Battle<'a>, DVec3);
 
 impl Watch {

@@ -41,7 +41,7 @@ pub struct BattleOptions {
     #[arg(long, value_name = "FILE")]
     pub brain: Option<PathBuf>,
 
-    /// Height of the creature [default: that of the file of --brain; without one 40 for the giant, and 20 for a
+    /// Height of the creature [default: the height in the file of --brain. Without --brain: 40 for the giant, 20 for a
     /// creature from a file].
     #[arg(long, value_name = "METRES")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
