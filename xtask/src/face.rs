@@ -72,7 +72,9 @@ fn face(items: &str) -> String {
             implementer =
                 implemented(line).map(|(of, ..)| of.split(" where ").next().unwrap_or(of));
         }
-        let function = line.strip_prefix("pub fn ");
+        let function = line
+            .strip_prefix("pub fn ")
+            .or(line.strip_prefix("pub unsafe fn "));
         let after = function.and_then(|path| path.strip_prefix(implementer?));
         if let Some((of, generics, name)) = implemented(line) {
             traits.entry((of, generics)).or_default().insert(name);

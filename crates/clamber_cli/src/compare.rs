@@ -127,7 +127,7 @@ fn climbers(
     while let Some((ours, theirs)) =
         both([&mut one, &mut other], options, |tick| tick.tick, &mut met)?
     {
-        if ours.input != theirs.input {
+        if (ours.input, ours.knockback) != (theirs.input, theirs.knockback) {
             return Ok(Comparison::InputsDiffer {
                 tick: ours.tick,
                 fighter: "the climber".to_owned(),

@@ -39,8 +39,9 @@ impl<'a> StepRules<'a> {
     /// before the first step.
     ///
     /// # Errors
-    /// [`ClimberError::SameMode`] if two of the modes have the same id, [`ClimberError::NotFinite`] if the velocity of
-    /// the air or of a knockback is not finite, and [`ClimberError::OutOfRange`] if its damage is not from 0 to 1.
+    /// [`ClimberError::SameMode`] if two of the modes have the same id, [`ClimberError::NotFinite`] if the air's
+    /// velocity or a number of the knockback is not finite, and [`ClimberError::OutOfRange`] if the knockback's damage is
+    /// not from 0 to 1.
     pub fn check(&self) -> Result<(), ClimberError> {
         for (index, mode) in self.modes.iter().enumerate() {
             let mut before = self.modes[..index].iter();

@@ -23,7 +23,7 @@ pub struct Airborne<'a> {
     pub climber: &'a Climber,
     /// The climber's input in every tick. Steering and gripping take effect.
     pub input: &'a ClimberInput,
-    /// The climber's contact rules and modes, as in its own steps.
+    /// The climber's contact rules and modes, as in its own steps. Their knockback is ignored.
     pub rules: &'a StepRules<'a>,
     /// The creature's obstacle id.
     pub creature: ObstacleId,
@@ -48,6 +48,11 @@ impl FutureSkin {
     ) -> Result<Option<Landing>, NavigationError> {
         check_step(dt)?;
         let mut flies = airborne.climber.clone();
+        // What struck the climber has struck it already.
+        let rules = StepRules {
+            knockback: None,
+            ..*airborne.rules
+        };
         if !self.place(forecast, 0.0)? {
             return Ok(None);
         }
@@ -59,7 +64,7 @@ impl FutureSkin {
             }
             let mut around: Vec<(ObstacleId, &dyn Obstacle)> = airborne.others.to_vec();
             around.push((airborne.creature, self.surface()));
-            flies.step_with(airborne.input, &around, airborne.rules, dt)?;
+            flies.step_with(airborne.input, &around, &rules, dt)?;
             let state = flies.state();
             if state.support.is_some() {
                 let state = *state;

@@ -8,7 +8,8 @@ use crate::brain::StateId;
 pub struct CreatureReport {
     /// Events of the step, in order.
     pub events: Vec<CreatureEvent>,
-    /// Blows that the creature dealt to people. Give each one to its climber with the next tick's input.
+    /// Blows that the creature dealt to people. Give each one to its climber's next step, as a knockback
+    /// of the same velocity and damage.
     pub blows: Vec<StrikeHit>,
     /// Beam of the creature's attack, if there is one in this tick.
     pub beam: Option<ActiveBeam>,

@@ -150,8 +150,8 @@ impl Flavor for Hasher {
 
 /// Adds a value in the form in which postcard writes it.
 fn take(hash: &mut Fingerprint, value: &impl Serialize) {
-    // Postcard fails only for sequences of unknown length, and a state has none. The error's text keeps a failure from
-    // looking like a value that was never added.
+    // Postcard fails only for sequences of unknown length, and a state has none. If one had, the error would be hashed
+    // instead of it.
     match postcard::serialize_with_flavor(value, Hasher(*hash)) {
         Ok(next) => *hash = next,
         Err(error) => hash.text(&error.to_string()),

@@ -74,6 +74,10 @@ impl Arena {
         rules: &StepRules<'_>,
     ) -> Result<&[ArenaEvent], ArenaError> {
         self.check(inputs, terrain)?;
+        let rules = &StepRules {
+            knockback: None,
+            ..*rules
+        };
         rules.check()?;
         let joining = self.check_orders(orders)?;
         self.tick = self.tick.wrapping_add(1);

@@ -28,8 +28,7 @@ pub struct TickView<'a> {
     pub tick: u64,
     /// The climber's input in this tick.
     pub input: &'a ClimberInput,
-    /// The blow that struck the climber before this tick:
-    /// [`StepRules::knockback`](clamber_climber::StepRules::knockback) of its step.
+    /// [`StepRules::knockback`](clamber_climber::StepRules::knockback) of the climber's step in this tick.
     pub knockback: Option<Knockback>,
     /// The climber's state after its step.
     pub state: &'a ClimberState,

@@ -16,7 +16,8 @@ pub struct RecordedTick {
     pub tick: u64,
     /// The climber's input in this tick.
     pub input: ClimberInput,
-    /// The blow that struck the climber before this tick.
+    /// [`StepRules::knockback`](clamber_climber::StepRules::knockback) of the climber's step in this tick; a replay has
+    /// to pass it again.
     pub knockback: Option<Knockback>,
     /// The climber's state at the end of the tick, bit for bit.
     pub state: ClimberState,

@@ -23,7 +23,7 @@ message! {
 }
 
 message! {
-    /// What a blow did to the climber.
+    /// A blow that strikes the climber in the tick.
     Struck of Knockback {
         velocity: Vector (message, required, tag = 1),
         damage: f64 (double, required, tag = 2),

@@ -45,8 +45,8 @@ fn precedes(one: &Touch, other: &Touch) -> bool {
 /// space: the contact's point on the shape at rest, and its normal and distance at that time.
 ///
 /// The reported fraction is never later than the true one. The distance at that time is at most the radius plus
-/// [`WorldCapsule::sweep_tolerance`], unless the solver cannot certify a distance (see
-/// [`SweepHit::undecided`](clamber_surface::surface::SweepHit::undecided)). Triangles are two-sided. Finds nothing if a
+/// [`WorldCapsule::sweep_tolerance`], unless the solver for triangles cannot certify a
+/// distance: such a contact is reported too, and may be farther away. Triangles are two-sided. Finds nothing if a
 /// coordinate is not finite or beyond 2^100, or if the radius is negative.
 pub fn sweep_shape(
     shape: &dyn Shape,

@@ -41,8 +41,8 @@ pub struct BattleOptions {
     #[arg(long, value_name = "FILE")]
     pub brain: Option<PathBuf>,
 
-    /// Height of the creature [default: the height in the file of --brain. Without --brain: 40 for the giant, 20 for a
-    /// creature from a file].
+    /// Height of the creature [default: the height in the file of --brain; if there is none, 40 for the giant, and 20
+    /// for a creature from a file].
     #[arg(long, value_name = "METRES")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub height: Option<f64>,
