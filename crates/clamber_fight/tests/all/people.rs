@@ -5,7 +5,7 @@ use crate::support;
 use crate::support::{
     GIANT, GROUND, HERO, Slab, land, low_ground, mode, pressing, rest, step, step_with, weak_point,
 };
-use clamber_climber::{ClimberError, ClimberInput, ClimberMode, StepRules};
+use clamber_climber::{ClimberError, ClimberInput, ClimberMode, Knockback, StepRules};
 use clamber_colossus::CreatureConfig;
 use clamber_fight::actions::STAB;
 use clamber_fight::{
@@ -303,4 +303,30 @@ fn bad_inputs_change_nothing() {
     assert_eq!(arena.fingerprint(), before);
     assert_eq!(arena.fighters().len(), 2);
     assert_eq!(arena.fighter(FighterId(2)).map(|one| one.id()), None);
+}
+
+/// The arena deals the blows itself: a knockback in the game's rules strikes nobody, and a bad one is no error.
+#[test]
+fn a_knockback_in_the_rules_strikes_nobody() {
+    for velocity in [DVec3::new(9.0, 9.0, 0.0), DVec3::NAN] {
+        let places = [DVec3::new(3.0, 1.5, 3.0), DVec3::new(-3.0, 1.5, 0.0)];
+        let arena = || swaying().arena(FighterConfig::hero(), &places);
+        let (mut one, mut other) = (arena(), arena());
+        let knockback = Knockback {
+            velocity,
+            damage: 0.5,
+            by: None,
+        };
+        let rules = StepRules {
+            knockback: Some(knockback),
+            ..StepRules::default()
+        };
+        for tick in 0..30 {
+            let idle = [ClimberInput::IDLE; 2];
+            one.step(&idle, &[]).unwrap();
+            other.step_with(&idle, &[], &[], &rules).unwrap();
+            let bits = [&one, &other].map(Arena::fingerprint);
+            assert_eq!(bits[0], bits[1], "tick {tick}, {velocity}");
+        }
+    }
 }
