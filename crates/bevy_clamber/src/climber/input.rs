@@ -65,11 +65,13 @@ impl ClimberInput {
 /// Two blows in one tick.
 fn sum(earlier: Option<ClimberBlow>, later: ClimberBlow) -> ClimberBlow {
     earlier.map_or(later, |earlier| {
-        let damage = earlier.damage + later.damage;
+        let damages = [earlier.damage, later.damage];
+        // The climber refuses NaN, as it would have refused the wrong one of both.
+        let are_sane = damages.iter().all(|damage| (0.0..=1.0).contains(damage));
+        let sum = if are_sane { damages.iter().sum::<f32>().min(1.0) } else { f32::NAN };
         ClimberBlow {
             velocity: earlier.velocity + later.velocity,
-            // Not `f32::min`, which would make NaN deadly.
-            damage: if damage > 1.0 { 1.0 } else { damage },
+            damage: sum,
             by: later.by.or(earlier.by),
         }
     })

@@ -180,8 +180,8 @@ impl CreatureKind {
         self.gait.is_some()
     }
 
-    /// A 64-bit hash of the skeleton, clips, skin, weak points, brain file and tick length, for comparing peers and
-    /// saved states.
+    /// A 64-bit hash of the skeleton, clips, skin, weak points, plates, brain file and tick length, for comparing peers
+    /// and saved states.
     pub fn fingerprint(&self) -> u64 {
         let body = creature_fingerprint(&self.skeleton, self.clips.clips(), &self.mesh);
         let mut hash = Fingerprint::new(body);
@@ -193,6 +193,13 @@ impl CreatureKind {
             hash.word(u64::from(point.joint.0) << 32 | u64::from(point.radius.to_bits()));
             hash.numbers([point.hit_points]);
             hash.word(u64::from(point.order) << 1 | u64::from(point.major));
+        }
+        // Plates are chosen by `SurfaceTag::user`, which the body's hash leaves out.
+        for plate in &self.plates {
+            hash.word(plate.triangles.len() as u64);
+            for triangle in &plate.triangles {
+                hash.word(u64::from(triangle.0));
+            }
         }
         // A brain file that was read can always be written.
         hash.text(&serde_json::to_string(self.brain.file()).unwrap_or_default());

@@ -33,6 +33,11 @@ const BRAIN: &str = r#"{
 
 /// A level slab of fur, and a plate of stone half a metre above it, on one joint, with two weak points.
 fn slab() -> Creature {
+    slab_with_plate(CELLS)
+}
+
+/// The same; only the first rows of its stone belong to the plate.
+fn slab_with_plate(rows: u32) -> Creature {
     let (mut positions, mut triangles, mut tags) = (Vec::new(), Vec::new(), Vec::new());
     for (height, kind, user) in [(0.0, SurfaceKind::Fur, 0), (0.5, SurfaceKind::Stone, 7)] {
         let first = positions.len() as u32;
@@ -47,6 +52,7 @@ fn slab() -> Creature {
                 let a = first + row * (CELLS + 1) + column;
                 let (b, c, d) = (a + 1, a + CELLS + 1, a + CELLS + 2);
                 triangles.extend([[a, c, d], [a, d, b]]);
+                let user = if row < rows { user } else { 0 };
                 tags.extend([SurfaceTag::new(kind).with_user(user); 2]);
             }
         }
@@ -151,6 +157,13 @@ fn a_restored_plate_is_whole_again() {
     assert!(is_there(&slab));
     slab.restore(broken).unwrap();
     assert!(!is_there(&slab));
+}
+
+#[test]
+fn kinds_with_other_plates_are_told_apart() {
+    let kind = |rows| slab_with_plate(rows).kind().fingerprint();
+    assert_eq!(kind(CELLS), kind(CELLS));
+    assert_ne!(kind(CELLS), kind(CELLS - 1));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use crate::support::{Body, ball, climber, skeleton};
-use clamber_climber::{Climber, ClimberInput, StepRules};
+use clamber_climber::{Climber, ClimberInput, Knockback, StepRules};
 use clamber_navigation::{
     Airborne, Bot, BotConfig, ClimbGraph, ClimbReport, Danger, Forecast, FutureSkin, Goal,
     GraphConfig, NavigationError, View,
@@ -311,4 +311,20 @@ fn a_landing_is_foreseen_on_the_skin_that_is_left() {
         gone.enable_triangle(TriangleId(triangle)).unwrap();
     }
     assert!((lands(&mut gone) - 8.0).abs() < 0.1);
+
+    // A blow of this tick has thrown the climber already: the prediction does not throw it again.
+    let blow = Knockback {
+        velocity: DVec3::new(60.0, 20.0, 0.0),
+        ..Knockback::default()
+    };
+    let struck = StepRules {
+        knockback: Some(blow),
+        ..StepRules::default()
+    };
+    let flight = Airborne {
+        rules: &struck,
+        ..flight
+    };
+    let landing = skin.landing(&flight, &mut rests, 1.0 / 60.0, 3.0).unwrap();
+    assert!((landing.unwrap().state.position.y - radius - 8.0).abs() < 0.1);
 }

@@ -128,16 +128,42 @@ fn blows_add_up_and_hurt() {
 
 #[test]
 fn blows_that_are_not_finite_are_refused_and_hurt_nobody() {
-    let (mut app, _, climber) = standing(64.0);
-    for damage in [f32::NAN, 0.2] {
-        let blow = ClimberBlow {
-            damage,
-            ..ClimberBlow::default()
-        };
-        input(&mut app, climber).strike(blow);
+    let sane = ClimberBlow {
+        velocity: Vec3::Y,
+        damage: 0.2,
+        by: None,
+    };
+    let blows = [
+        ClimberBlow {
+            damage: f32::NAN,
+            ..sane
+        },
+        ClimberBlow {
+            damage: f32::INFINITY,
+            ..sane
+        },
+        ClimberBlow {
+            damage: -0.2,
+            ..sane
+        },
+        ClimberBlow {
+            velocity: Vec3::new(0.0, f32::NAN, 0.0),
+            ..sane
+        },
+        ClimberBlow {
+            velocity: Vec3::X * f32::INFINITY,
+            ..sane
+        },
+    ];
+    for wrong in blows {
+        let (mut app, _, climber) = standing(64.0);
+        input(&mut app, climber).strike(wrong);
+        input(&mut app, climber).strike(sane);
+        updates(&mut app, 3);
+        let after = state(&app, climber);
+        assert_eq!(after.hit_points, 1.0, "{wrong:?}");
+        assert!(after.position.is_finite(), "{wrong:?}");
     }
-    updates(&mut app, 3);
-    assert_eq!(state(&app, climber).hit_points, 1.0);
 }
 
 #[test]
