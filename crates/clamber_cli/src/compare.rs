@@ -12,8 +12,9 @@ use thiserror::Error;
 /// Compares two recordings of one scene tick by tick, bit for bit.
 ///
 /// The recordings may come from two platforms, for example. Prints the first tick and the first field that differ. For
-/// arenas, prints the creatures and fighters that differ, or the fighter whose input differs. Exits with 1 if the
-/// recordings differ, with 2 if one cannot be read or their scenes differ.
+/// arenas, prints the creatures and fighters that differ. If an input, a knockback or an order differs, prints that
+/// instead, and whose input it is. Exits with 1 if the recordings differ, with 2 if one cannot be read or their scenes
+/// differ.
 #[derive(Args, Clone, Debug)]
 pub struct CompareOptions {
     /// A recording.
@@ -61,6 +62,11 @@ pub enum Comparison {
         tick: u64,
         /// The fighter's name, or `the climber`.
         fighter: String,
+    },
+    /// The knockback of the climber differs in the step to this tick. All ticks before are equal in every bit.
+    KnockbacksDiffer {
+        /// The tick.
+        tick: u64,
     },
     /// The orders of the step to this tick differ. All ticks before are equal in every bit.
     OrdersDiffer {
@@ -127,11 +133,14 @@ fn climbers(
     while let Some((ours, theirs)) =
         both([&mut one, &mut other], options, |tick| tick.tick, &mut met)?
     {
-        if (ours.input, ours.knockback) != (theirs.input, theirs.knockback) {
+        if ours.input != theirs.input {
             return Ok(Comparison::InputsDiffer {
                 tick: ours.tick,
                 fighter: "the climber".to_owned(),
             });
+        }
+        if ours.knockback != theirs.knockback {
+            return Ok(Comparison::KnockbacksDiffer { tick: ours.tick });
         }
         let replayed = Replayed {
             state: theirs.state,
@@ -297,6 +306,9 @@ pub fn print(options: &CompareOptions) -> Result<bool, CompareError> {
         ),
         Comparison::Differ(difference) => print!("{difference}"),
         Comparison::ArenasDiffer(difference) => println!("{difference}"),
+        Comparison::KnockbacksDiffer { tick } => println!(
+            "the knockback of the climber for the step to tick {tick} differs; what both have before is equal"
+        ),
         Comparison::OrdersDiffer { tick } => {
             println!(
                 "the orders of the step to tick {tick} differ; what both have before is equal"

@@ -297,7 +297,7 @@ impl<W: Write> Output<W> {
     }
 
     /// Ends the current chunk.
-    fn flush(&mut self) -> Result<(), RecordError> {
+    pub(crate) fn flush(&mut self) -> Result<(), RecordError> {
         self.chunk = 0;
         Ok(self.writer()?.flush()?)
     }

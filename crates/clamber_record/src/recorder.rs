@@ -12,22 +12,30 @@ use crate::{RecordError, RecordingKind};
 
 /// Options of a recorder: how often views for people are recorded, and how large chunks are.
 ///
-/// Inputs, states, fingerprints and events are recorded every tick, with any options.
+/// Everything that a replay needs, and events, are recorded every tick, with any options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordOptions {
     /// Ticks between two messages of transforms (of the creature and of figures) and of brains; 0 for none. Default 4:
     /// 15 messages a second at 60 Hz. A message takes 6 kB for a creature of 45 joints. Lower it for smooth motion of
     /// limbs.
+    ///
+    /// In an arena, bodies, arrows and the creatures' attacks are recorded in these ticks, too.
     pub transforms_every: u32,
     /// Ticks between two views of the skin and of the climber's body and support; 0 for none. Default 4, like the
     /// transforms: a skin that is recorded less often lags behind the joints. Each view skins the whole creature and
     /// takes about 12 kB. Raise both for large creatures.
     ///
     /// Until a view is written, it shares the mesh with the surface. The first edit in that time has to copy the mesh.
+    ///
+    /// In an arena, this concerns the skins of the creatures only. They are recorded in those of these ticks in which
+    /// transforms are due, too: with 4 and `transforms_every` 6, in every twelfth tick, and with `transforms_every` 0
+    /// never.
     pub skin_every: u32,
     /// Ticks between two views of the triangles that queries touched; 0 for none. Default 60: once a second at 60 Hz.
     /// These triangles are recorded only in ticks with a view of the skin, and shown until the next one. They are the
     /// most expensive part: a view takes about 50 kB.
+    ///
+    /// An arena's recorder ignores this number: it does not record these triangles.
     pub touched_every: u32,
     /// Largest number of points in a view of the skin. Default 1000; 0 means 1.
     pub skin_points: usize,
@@ -75,9 +83,10 @@ impl Default for RecordOptions {
 
 /// Writes a recording, chunk by chunk, on a thread of its own.
 ///
-/// `tick` only copies the tick. When a chunk is complete, the thread skins, encodes and writes its ticks in order,
-/// while the game runs. If the thread falls behind by some seconds, either ticks are left out, counted and logged, or
-/// the game waits: see [`RecordOptions::waits`].
+/// `tick` copies the tick and makes the log lines of its events, on the game's thread. An arena's recorder also hashes
+/// the arena there in each tick, and saves its state at the beginning of each chunk. When a chunk is complete, the
+/// recorder's thread skins, encodes and writes its ticks in order, while the game runs. If that thread falls behind by
+/// some seconds, either ticks are left out, counted and logged, or the game waits: see [`RecordOptions::waits`].
 ///
 /// A chunk is held in memory and written as a whole, so the file is readable up to the last written chunk
 /// whenever writing stops. A recorder that is dropped without [`RecorderOf::finish`] finishes the file too, but

@@ -1,6 +1,6 @@
 //! Names of a recording's topics, each with the type of its messages.
 
-/// Every tick: input, state, a summary of the step's report, and fingerprints (`tick.Tick`).
+/// Every tick: input and knockback, state, a summary of the step's report, and fingerprints (`tick.Tick`).
 pub const TICK: &str = "/tick";
 /// Snapshots of the scene, which the caller records, to resume from a tick (`saved.Saved`).
 pub const SNAPSHOT: &str = "/snapshot";
@@ -21,7 +21,7 @@ pub const SKIN: &str = "/skin";
 pub const TOUCHED: &str = "/touched";
 /// Events of climber and creature (`foxglove.Log`).
 pub const LOG: &str = "/log";
-/// Every tick of an arena: inputs and fingerprints (`arenatick.ArenaTick`).
+/// Every tick of an arena: inputs, orders and fingerprints (`arenatick.ArenaTick`).
 pub const ARENA: &str = "/arena";
 /// Saved states of an arena, to resume from (`saved.Saved`).
 pub const ARENA_SNAPSHOT: &str = "/arena_snapshot";

@@ -4,9 +4,10 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use clamber_cli::inspect::{InspectOptions, inspect};
+use clamber_climber::Knockback;
 use clamber_gltf::load;
-use clamber_record::RecordOptions;
-use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
+use clamber_record::{RecordOptions, Recorder, RecordingInfo, TickView};
+use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder, TICK};
 use clamber_scenes::duel::{self, Duel};
 use clamber_scenes::{giant, test_data};
 
@@ -225,6 +226,60 @@ fn recordings_are_equal_or_the_first_field_that_differs_is_told() {
         (again, 0, "all 60 ticks are equal"),
         (shorter, 1, "40 ticks are equal in every bit; then"),
         (other, 1, "the climber's state differs in"),
+    ];
+    compares(&first, &rows);
+}
+
+/// Records a ride of 60 ticks, with a knockback of the climber at tick 30. Nothing else in the recording depends on the
+/// knockback.
+fn recorded_knockback(name: &str, knockback: Option<Knockback>) -> String {
+    let options = BattleOptions::ride(0, 1);
+    let creature = giant::giant().unwrap();
+    let mut battle = Battle::new(&creature, &options).unwrap();
+    let info = RecordingInfo {
+        creature: creature.name.clone(),
+        creature_fingerprint: 0,
+        tick_seconds: TICK,
+        climber: *battle.climber().config(),
+        settings: Default::default(),
+        version: RecordingInfo::VERSION.to_owned(),
+    };
+    let (skeleton, how) = (&creature.rig.skeleton, RecordOptions::waiting());
+    let mut recorder = Recorder::new(Vec::new(), &info, skeleton, how).unwrap();
+    for tick in 0..60 {
+        battle.step(options.input_at(tick)).unwrap();
+        let view = TickView {
+            tick: battle.tick(),
+            input: &battle.input,
+            knockback: knockback.filter(|_| battle.tick() == 30),
+            state: battle.climber().state(),
+            report: battle.report(),
+            surface: battle.surface(),
+            palette: battle.palette(),
+            scene_fingerprint: 0,
+        };
+        recorder.tick(&view).unwrap();
+    }
+    let file = format!("{}/{name}.mcap", env!("CARGO_TARGET_TMPDIR"));
+    std::fs::write(&file, recorder.finish().unwrap()).unwrap();
+    file
+}
+
+#[test]
+fn a_knockback_that_differs_is_told() {
+    let blow = Some(Knockback {
+        damage: 0.25,
+        ..Knockback::default()
+    });
+    let first = recorded_knockback("struck", blow);
+    let told = "the knockback of the climber for the step to tick 30 differs";
+    let rows = [
+        (
+            recorded_knockback("struck_again", blow),
+            0,
+            "all 60 ticks are equal",
+        ),
+        (recorded_knockback("not_struck", None), 1, told),
     ];
     compares(&first, &rows);
 }

@@ -27,7 +27,7 @@ impl Arena {
     /// A 64-bit hash of everything that [`Arena::save`] saves, except the hash of the configuration. For comparing runs
     /// and peers; not for hash tables.
     pub fn fingerprint(&self) -> u64 {
-        let mut hash = Fingerprint::default();
+        let mut hash = [Fingerprint::default()];
         self.take_counters(&mut hash);
         for one in &self.creatures {
             take_creature(&mut hash, one.mark, one.creature.state());
@@ -36,40 +36,58 @@ impl Arena {
             let climber = fighter.climber().state();
             take_fighter(&mut hash, fighter.mark(), climber, fighter.rest());
         }
-        take(&mut hash, &(&self.projectiles, &self.noises));
+        self.take_last(&mut hash);
+        let [hash] = hash;
         hash.value()
     }
 
     /// Hashes of the single parts, to find the parts that differ: each creature, then each fighter, then the rest.
     pub fn part_fingerprints(&self) -> Vec<(ArenaPart, u64)> {
-        let creatures = self.creatures.iter().map(|one| {
-            let mut hash = Fingerprint::default();
-            take_creature(&mut hash, one.mark, one.creature.state());
-            (ArenaPart::Creature(one.id), hash.value())
-        });
-        let fighters = self.fighters.iter().map(|fighter| {
-            let mut hash = Fingerprint::default();
-            let climber = fighter.climber().state();
-            take_fighter(&mut hash, fighter.mark(), climber, fighter.rest());
-            (ArenaPart::Fighter(fighter.id()), hash.value())
-        });
-        let mut rest = Fingerprint::default();
-        self.take_counters(&mut rest);
-        take(&mut rest, &(&self.projectiles, &self.noises));
-        let rest = (ArenaPart::Rest, rest.value());
-        creatures.chain(fighters).chain([rest]).collect()
+        self.fingerprints().1
     }
 
-    fn take_counters(&self, hash: &mut Fingerprint) {
+    /// [`Arena::fingerprint`] and [`Arena::part_fingerprints`], in one pass over the state.
+    pub fn fingerprints(&self) -> (u64, Vec<(ArenaPart, u64)>) {
+        let mut parts = Vec::with_capacity(self.creatures.len() + self.fighters.len() + 1);
+        let mut ends = [Fingerprint::default(); 2];
+        self.take_counters(&mut ends);
+        let [mut all, rest] = ends;
+        for one in &self.creatures {
+            let mut both = [all, Fingerprint::default()];
+            take_creature(&mut both, one.mark, one.creature.state());
+            all = both[0];
+            parts.push((ArenaPart::Creature(one.id), both[1].value()));
+        }
+        for fighter in &self.fighters {
+            let mut both = [all, Fingerprint::default()];
+            let climber = fighter.climber().state();
+            take_fighter(&mut both, fighter.mark(), climber, fighter.rest());
+            all = both[0];
+            parts.push((ArenaPart::Fighter(fighter.id()), both[1].value()));
+        }
+        let mut ends = [all, rest];
+        self.take_last(&mut ends);
+        let [all, rest] = ends;
+        parts.push((ArenaPart::Rest, rest.value()));
+        (all.value(), parts)
+    }
+
+    /// Hashes the numbers of the tick and of those who join next. They are hashed before creatures and fighters.
+    fn take_counters<const N: usize>(&self, hashes: &mut [Fingerprint; N]) {
         let next = (self.next_creature, self.next_fighter, self.next_projectile);
-        take(hash, &(self.tick, next));
+        take(hashes, &(self.tick, next));
+    }
+
+    /// Hashes projectiles and noises. They are hashed after creatures and fighters.
+    fn take_last<const N: usize>(&self, hashes: &mut [Fingerprint; N]) {
+        take(hashes, &(&self.projectiles, &self.noises));
     }
 }
 
 impl ArenaState {
     /// The same hash as [`Arena::fingerprint`] of the arena from which this state was saved.
     pub fn fingerprint(&self) -> u64 {
-        let mut hash = Fingerprint::default();
+        let mut hash = [Fingerprint::default()];
         let next = (self.next_creature, self.next_fighter, self.next_projectile);
         take(&mut hash, &(self.tick, next));
         for one in &self.creatures {
@@ -81,23 +99,35 @@ impl ArenaState {
             take_fighter(&mut hash, mark, &one.state.climber, &one.state);
         }
         take(&mut hash, &(&self.projectiles, &self.noises));
+        let [hash] = hash;
         hash.value()
     }
 }
 
-fn take_creature(hash: &mut Fingerprint, mark: u64, state: &CreatureState) {
-    hash.word(mark);
-    take(hash, state);
+fn take_creature<const N: usize>(hashes: &mut [Fingerprint; N], mark: u64, state: &CreatureState) {
+    take_mark(hashes, mark);
+    take(hashes, state);
 }
 
-fn take_fighter(hash: &mut Fingerprint, mark: u64, climber: &ClimberState, state: &FighterState) {
-    hash.word(mark);
-    take(hash, climber);
-    add_fighter(hash, state);
+fn take_fighter<const N: usize>(
+    hashes: &mut [Fingerprint; N],
+    mark: u64,
+    climber: &ClimberState,
+    state: &FighterState,
+) {
+    take_mark(hashes, mark);
+    take(hashes, climber);
+    add_fighter(hashes, state);
+}
+
+fn take_mark(hashes: &mut [Fingerprint], mark: u64) {
+    for hash in hashes {
+        hash.word(mark);
+    }
 }
 
 /// Hashes a fighter's state without its climber.
-fn add_fighter(hash: &mut Fingerprint, state: &FighterState) {
+fn add_fighter<const N: usize>(hashes: &mut [Fingerprint; N], state: &FighterState) {
     let FighterState {
         climber: _,
         act,
@@ -112,48 +142,58 @@ fn add_fighter(hash: &mut Fingerprint, state: &FighterState) {
         spawn,
     } = state;
     take(
-        hash,
+        hashes,
         &(
             act, actions, knockback, harm, hit_stop, dead, arrows, random,
         ),
     );
-    take(hash, &(has_begun, spawn));
+    take(hashes, &(has_begun, spawn));
 }
 
 /// Hash of a value in its serialised form.
 pub(crate) fn hash_of(start: u64, value: &impl Serialize) -> u64 {
-    let mut hash = Fingerprint::new(start);
+    let mut hash = [Fingerprint::new(start)];
     take(&mut hash, value);
+    let [hash] = hash;
     hash.value()
 }
 
-/// Hashes what postcard writes.
-struct Hasher(Fingerprint);
+/// Adds what postcard writes to each of some hashes.
+struct Hasher<const N: usize>([Fingerprint; N]);
 
-impl Flavor for Hasher {
-    type Output = Fingerprint;
+impl<const N: usize> Flavor for Hasher<N> {
+    type Output = [Fingerprint; N];
 
     fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
-        self.0.bytes(bytes);
+        for hash in &mut self.0 {
+            hash.bytes(bytes);
+        }
         Ok(())
     }
 
     fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
-        self.0.word(u64::from(byte));
+        for hash in &mut self.0 {
+            hash.word(u64::from(byte));
+        }
         Ok(())
     }
 
-    fn finalize(self) -> postcard::Result<Fingerprint> {
+    fn finalize(self) -> postcard::Result<[Fingerprint; N]> {
         Ok(self.0)
     }
 }
 
-/// Adds a value in the form in which postcard writes it.
-fn take(hash: &mut Fingerprint, value: &impl Serialize) {
+/// Adds a value, in the form in which postcard writes it, to each of some hashes.
+fn take<const N: usize>(hashes: &mut [Fingerprint; N], value: &impl Serialize) {
     // Postcard fails only for sequences of unknown length, and a state has none. If one had, the error would be hashed
     // instead of it.
-    match postcard::serialize_with_flavor(value, Hasher(*hash)) {
-        Ok(next) => *hash = next,
-        Err(error) => hash.text(&error.to_string()),
+    match postcard::serialize_with_flavor(value, Hasher(*hashes)) {
+        Ok(next) => *hashes = next,
+        Err(error) => {
+            let error = error.to_string();
+            for hash in hashes {
+                hash.text(&error);
+            }
+        }
     }
 }

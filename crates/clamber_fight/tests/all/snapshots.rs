@@ -59,6 +59,7 @@ fn a_restored_arena_goes_on_with_the_same_bits() {
         states.push(melee.arena.save());
         sums.push(melee.arena.fingerprint());
         assert_eq!(states[tick as usize].fingerprint(), sums[tick as usize]);
+        assert_eq!(melee.arena.fingerprints().0, sums[tick as usize]);
         if tick >= AGAIN && tick % 3 == 0 {
             let from = tick - AGAIN;
             melee.arena.restore(&states[from as usize]).unwrap();

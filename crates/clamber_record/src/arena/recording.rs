@@ -60,6 +60,9 @@ impl ArenaDifference {
         fingerprint: u64,
         parts: &[(ArenaPart, u64)],
     ) -> Option<Self> {
+        if fingerprint == recorded.fingerprint {
+            return None;
+        }
         let name = |part: ArenaPart| match part {
             ArenaPart::Creature(id) => info.creature(id.0 as usize),
             ArenaPart::Fighter(id) => info.fighter(id.0 as usize),
@@ -70,7 +73,7 @@ impl ArenaDifference {
         // Parts that only one of the two has differ, too.
         let differ = ours.symmetric_difference(&theirs).map(|(part, _)| *part);
         let differ: BTreeSet<ArenaPart> = differ.collect();
-        (fingerprint != recorded.fingerprint).then(|| Self {
+        Some(Self {
             recorded: recorded.clone(),
             fingerprint,
             parts: differ.into_iter().map(|part| (part, name(part))).collect(),

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 use std::sync::Arc;
 
-use clamber_climber::{ClimberConfig, ClimberInput, ClimberState};
+use clamber_climber::{ClimberInput, ClimberState};
 use clamber_colossus::{ActiveBeam, ActiveShot, ActiveWave, Creature, CreatureEvent};
 use clamber_fight::{Arena, Blade, CreatureId, FighterId, Order, ProjectilePlace};
 use clamber_surface::geometry::Affine;
@@ -18,7 +18,7 @@ use super::recording::LARGEST_TICK;
 use crate::messages::{ArenaTick, Brain, Mirror};
 use crate::output::{Channel, Output};
 use crate::views::{
-    ATTACKS, FigureJoints, PROJECTILES, Scene, TakenFigure, brain, color, deletion, entity,
+    ATTACKS, BodyShape, FigureJoints, PROJECTILES, TakenFigure, brain, color, deletion, entity,
     frame_of_climber, from_z_to, left_out, no_skin, pose, vector, z_up,
 };
 use crate::{OfArena, RecordError, RecordingKind, topics};
@@ -60,7 +60,7 @@ pub(crate) struct TakenCreature {
 #[derive(Clone, Debug)]
 pub(crate) struct TakenFighter {
     pub(crate) id: FighterId,
-    pub(crate) config: ClimberConfig,
+    pub(crate) shape: BodyShape,
     pub(crate) state: ClimberState,
     pub(crate) blade: Option<Blade>,
 }
@@ -71,7 +71,7 @@ impl TakenArena {
         arena: &Arena,
         (inputs, orders): (&[ClimberInput], &[Order]),
     ) -> Result<Self, RecordError> {
-        let parts = arena.part_fingerprints();
+        let (fingerprint, parts) = arena.fingerprints();
         let orders = match orders {
             [] => Vec::new(),
             orders => Order::to_bytes(orders)?,
@@ -81,7 +81,7 @@ impl TakenArena {
             message: ArenaTick {
                 tick: arena.tick(),
                 inputs: inputs.iter().map(Mirror::of).collect(),
-                fingerprint: arena.fingerprint(),
+                fingerprint,
                 parts: parts.into_iter().map(|(_, part)| part).collect(),
                 creatures: arena.creatures().map(|(id, _)| id.0).collect(),
                 fighters: fighters.map(|fighter| fighter.id().0).collect(),
@@ -105,7 +105,7 @@ impl ArenaView {
         });
         let fighters = arena.fighters().iter().map(|fighter| TakenFighter {
             id: fighter.id(),
-            config: fighter.config().climber,
+            shape: BodyShape::of(&fighter.config().climber),
             state: *fighter.climber().state(),
             blade: fighter.blade(),
         });
@@ -165,8 +165,8 @@ pub(super) struct ArenaEncoder {
     creatures: BTreeMap<CreatureId, (Channel, Channel)>,
     /// Frame of each creature whose skin is drawn.
     drawn: BTreeMap<CreatureId, String>,
-    /// Name of each fighter that was there in the last view, and the drawing of its body.
-    fighters: BTreeMap<FighterId, (String, Scene)>,
+    /// Name of each fighter that was there in the last view.
+    fighters: BTreeMap<FighterId, String>,
     info: ArenaInfo,
     /// True once the log has said that creatures are left out of the views.
     has_told: bool,
@@ -205,15 +205,13 @@ impl ArenaEncoder {
         // Fighters that have left are no longer drawn.
         let here: BTreeSet<FighterId> = view.fighters.iter().map(|fighter| fighter.id).collect();
         let gone = self.fighters.extract_if(.., |id, _| !here.contains(id));
-        let deletions = gone.map(|(_, (name, _))| deletion(now, &name)).collect();
+        let deletions = gone.map(|(_, name)| deletion(now, &name)).collect();
         let mut entities = Vec::new();
         for fighter in &view.fighters {
-            let (name, scene) = self.fighters.entry(fighter.id).or_insert_with(|| {
-                let name = self.info.fighter(fighter.id.0 as usize);
-                (name, Scene::new(&fighter.config, self.info.tick_seconds))
-            });
+            let named = || self.info.fighter(fighter.id.0 as usize);
+            let name = self.fighters.entry(fighter.id).or_insert_with(named);
             transforms.push(frame_of_climber(now, name, &fighter.state));
-            entities.push(body(now, name, scene, fighter));
+            entities.push(body(now, name, fighter));
         }
         output.transforms(transforms)?;
         entities.push(arrows(now, &view.projectiles));
@@ -283,6 +281,8 @@ impl ArenaEncoder {
         output: &mut Output<W>,
     ) -> Result<(), RecordError> {
         if prost::Message::encoded_len(&data.message) > LARGEST_TICK {
+            // The ticks before this one are kept.
+            output.flush()?;
             let reason = "a tick of more than 2 MiB, which no reader takes";
             return Err(RecordError::encode(topics::ARENA, reason));
         }
@@ -296,9 +296,9 @@ impl ArenaEncoder {
 }
 
 /// The entity of a climber's body and its sword.
-fn body(now: u64, name: &str, scene: &Scene, fighter: &TakenFighter) -> SceneEntity {
+fn body(now: u64, name: &str, fighter: &TakenFighter) -> SceneEntity {
     let mut entity = entity(now, name);
-    scene.body(&fighter.state, &mut entity);
+    fighter.shape.draw(&fighter.state, &mut entity);
     let sword = fighter
         .blade
         .map(|Blade { hilt, tip }| arrow(hilt, tip, [0.05, 0.1], [0.8, 0.85, 0.9]));

@@ -199,8 +199,8 @@ pub enum ReplayError<E> {
 
 /// Replays ticks and compares each with the recording, up to the first difference.
 ///
-/// `step` is called for each recorded tick in order. It brings its scene to that tick with the recorded input, and
-/// returns the result. If all ticks agree, their number is returned.
+/// `step` is called for each recorded tick in order. It brings its scene to that tick with the recorded input and
+/// knockback, and returns the result. If all ticks agree, their number is returned.
 ///
 /// Tick numbers must be consecutive. Replay each run of a recording with gaps
 /// ([`Recording::runs`](crate::Recording::runs)) by itself, from the snapshot of its first tick on.

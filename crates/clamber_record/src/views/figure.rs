@@ -47,11 +47,13 @@ impl TakenFigure {
         palette: &Palette,
         world_from_model: Similarity,
     ) -> Self {
-        let model_from_joint = (0..).map_while(|joint| palette.model_from_joint(JointId(joint)));
+        let placed = (0..).map_while(|joint| palette.model_from_joint(JointId(joint)));
+        let mut model_from_joint = Vec::with_capacity(palette.matrices().len());
+        model_from_joint.extend(placed.copied());
         Self {
             joints,
             world_from_model,
-            model_from_joint: model_from_joint.copied().collect(),
+            model_from_joint,
         }
     }
 

@@ -12,7 +12,7 @@ pub(crate) use brain::{brain, brain_lines, line as creature_line};
 pub(crate) use figure::{FigureJoints, TakenFigure};
 pub(crate) use frames::{frame, frame_of_climber, z_up};
 pub(crate) use log::{gap_line, left_out, line, log};
-pub(crate) use scene::{Scene, from_z_to};
+pub(crate) use scene::{BodyShape, Scene, from_z_to};
 pub use scenery::SceneryView;
 pub(crate) use scenery::{Sceneries, SceneryNames, TakenScenery};
 pub(crate) use skin::{no_skin, skin};

@@ -11,13 +11,54 @@ use crate::climber::{ClimberTick, TakenSkin};
 /// Marks a vertex that is not among the points. No point has this index.
 const NOWHERE: u32 = u32::MAX;
 
+/// Size of a climber's body, as it is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BodyShape {
+    radius: f64,
+    /// Vector from the centre of the climber's lower ball to the centre of its upper ball while it is upright, metres.
+    upright: DVec3,
+}
+
+impl BodyShape {
+    pub(crate) fn of(climber: &ClimberConfig) -> Self {
+        Self {
+            radius: climber.body.radius,
+            upright: climber.up() * climber.body.height,
+        }
+    }
+
+    /// Adds the climber's body: a ball, or a capsule if the climber is upright and has a height.
+    pub(crate) fn draw(&self, state: &ClimberState, climber: &mut SceneEntity) {
+        let tint = Some(color_of(state.mode));
+        let diameter = 2.0 * self.radius;
+        let ball = |center| SpherePrimitive {
+            pose: Some(pose(center, DQuat::IDENTITY)),
+            size: Some(vector(DVec3::splat(diameter))),
+            color: tint,
+        };
+        climber.spheres = vec![ball(state.position)];
+        let height = self.upright.length();
+        if height > 0.0 && !state.mode.is_holding() && !state.crouched {
+            climber.spheres.push(ball(state.position + self.upright));
+            climber.cylinders = vec![CylinderPrimitive {
+                pose: Some(pose(
+                    state.position + self.upright * 0.5,
+                    from_z_to(self.upright / height),
+                )),
+                size: Some(vector(DVec3::new(diameter, diameter, height))),
+                bottom_scale: 1.0,
+                top_scale: 1.0,
+                color: tint,
+            }];
+        }
+    }
+}
+
 /// The view of the scene: triangles that this tick's queries reached, the triangle that supports the climber, and
 /// the climber's body.
 pub(crate) struct Scene {
     tick_seconds: f64,
-    radius: f64,
-    /// Vector from the centre of the climber's lower ball to the centre of its upper ball while it is upright, metres.
-    upright: DVec3,
+    shape: BodyShape,
     /// For each vertex, its index among the points; all are [`NOWHERE`] between calls. Kept so that its memory is
     /// reused.
     places: Vec<u32>,
@@ -27,8 +68,7 @@ impl Scene {
     pub(crate) fn new(climber: &ClimberConfig, tick_seconds: f64) -> Self {
         Self {
             tick_seconds,
-            radius: climber.body.radius,
-            upright: climber.up() * climber.body.height,
+            shape: BodyShape::of(climber),
             places: Vec::new(),
         }
     }
@@ -68,39 +108,13 @@ impl Scene {
         support.triangles = vec![self.list(mesh, scale, positions, triangle, tint)];
 
         let mut climber = entity(nanoseconds, CLIMBER);
-        self.body(state, &mut climber);
+        self.shape.draw(state, &mut climber);
         SceneUpdate {
             deletions: Vec::new(),
             entities: [touched, support, climber]
                 .into_iter()
                 .skip(usize::from(skin.triangles.is_none()))
                 .collect(),
-        }
-    }
-
-    /// Adds the climber's body: a ball, or a capsule if the climber is upright and has a height.
-    pub(crate) fn body(&self, state: &ClimberState, climber: &mut SceneEntity) {
-        let tint = Some(color_of(state.mode));
-        let diameter = 2.0 * self.radius;
-        let ball = |center| SpherePrimitive {
-            pose: Some(pose(center, DQuat::IDENTITY)),
-            size: Some(vector(DVec3::splat(diameter))),
-            color: tint,
-        };
-        climber.spheres = vec![ball(state.position)];
-        let height = self.upright.length();
-        if height > 0.0 && !state.mode.is_holding() && !state.crouched {
-            climber.spheres.push(ball(state.position + self.upright));
-            climber.cylinders = vec![CylinderPrimitive {
-                pose: Some(pose(
-                    state.position + self.upright * 0.5,
-                    from_z_to(self.upright / height),
-                )),
-                size: Some(vector(DVec3::new(diameter, diameter, height))),
-                bottom_scale: 1.0,
-                top_scale: 1.0,
-                color: tint,
-            }];
         }
     }
 
@@ -192,7 +206,7 @@ mod tests {
         let mut state = *climber.state();
         change(&mut state);
         let mut entity = SceneEntity::default();
-        Scene::new(&config, 1.0 / 60.0).body(&state, &mut entity);
+        BodyShape::of(&config).draw(&state, &mut entity);
         entity
     }
 

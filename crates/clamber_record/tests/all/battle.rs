@@ -90,12 +90,9 @@ fn a_climb_replays_bit_for_bit() {
         }
     });
     let ticks: Vec<_> = recording.ticks().map(|tick| tick.unwrap()).collect();
-    let inputs: Vec<_> = ticks.iter().map(|tick| tick.input).collect();
-    // A replay needs no blows: the arena deals them itself, as a result of the inputs.
-    assert!(ticks.iter().all(|tick| tick.knockback.is_none()));
     let is_struck = |tick: &RecordedTick| tick.state.hit_points < 1.0;
     assert!(ticks.iter().any(is_struck));
-    assert!(inputs.iter().any(|input| input.climb != DVec3::ZERO));
+    assert!(ticks.iter().any(|tick| tick.input.climb != DVec3::ZERO));
 }
 
 /// The fields of a brain's message that a test reads.

@@ -1,15 +1,15 @@
 //! Files that were made to do harm, or that other programs have cut. They have no checksums, so that the reader has to
 //! check their contents.
 
-use clamber_climber::ClimberInput;
-use clamber_fight::{ArenaConfig, FighterConfig};
+use clamber_climber::{ClimberInput, Knockback};
+use clamber_fight::{ArenaConfig, FighterConfig, FighterId, Order};
 use clamber_record::{
     ArenaInfo, ArenaRecorder, ArenaRecording, Ending, RecordError, RecordOptions, topics,
 };
 use glam::{DVec3, Vec3};
 
 use crate::elsewhere::{CHUNK, DATA_END, arena, compressed, file, inputs, records, rock, written};
-use crate::stage::terrain;
+use crate::stage::{Disk, terrain};
 
 /// Kind of MCAP's channel record.
 const CHANNEL: u8 = 0x04;
@@ -187,6 +187,40 @@ fn who_joins_without_an_order_is_told() {
     arena.step(&inputs, &terrain).unwrap();
     let error = recorder.tick(&arena, &inputs, &[], &terrain).unwrap_err();
     assert!(matches!(error, RecordError::Joined), "{error}");
+}
+
+/// A tick that is larger than a reader takes ends the recording with an error. The ticks before it are kept, also those
+/// of its chunk.
+#[test]
+fn the_ticks_before_one_that_is_too_large_are_kept() {
+    let mut arena = arena();
+    let info = ArenaInfo::of(&arena);
+    let options = RecordOptions {
+        chunk_ticks: 1000,
+        ..RecordOptions::waiting()
+    };
+    let disk = Disk::default();
+    let mut recorder = ArenaRecorder::new(disk.clone(), &info, &arena, options).unwrap();
+    let terrain = terrain();
+    let order = Order::Strike {
+        fighter: FighterId(9),
+        knockback: Knockback::default(),
+    };
+    let size = Order::to_bytes(std::slice::from_ref(&order)).unwrap().len();
+    let many = vec![order; (2 << 20) / (size - 1).max(1) * 2];
+    for tick in 0..30 {
+        arena.step(&inputs(tick), &terrain).unwrap();
+        let orders = if tick == 20 { &many[..] } else { &[] };
+        recorder
+            .tick(&arena, &inputs(tick), orders, &terrain)
+            .unwrap();
+    }
+    let error = recorder.finish().map(drop).unwrap_err();
+    assert!(error.to_string().contains("2 MiB"), "{error}");
+    let recording = ArenaRecording::from_bytes(disk.bytes()).unwrap();
+    assert_eq!(*recording.ending(), Ending::Early);
+    // The step of index 20 leads to tick 21.
+    assert_eq!(recording.last(), Some(20));
 }
 
 /// Meshes beyond the limit are left out, and the recording goes on.

@@ -8,5 +8,7 @@ mod damage;
 mod elsewhere;
 mod figure;
 mod hostile;
+mod knockback;
+mod memory;
 mod python;
 mod stage;
