@@ -169,15 +169,15 @@ pub struct EntityHit {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EntitySweepHit {
-    /// The contact at `time`. Its distance is from the capsule's segment.
+    /// The contact at `fraction` of the motion. Its distance is from the capsule's segment.
     pub hit: EntityHit,
     /// Unit vector from the point to the capsule's segment; if the segment touches the triangle, the triangle's normal.
     pub separation_normal: Vec3,
-    /// Share of the motion that was made at the contact, 0..=1.
-    pub time: f32,
-    /// True if the capsule overlaps the skin at the start; `time` is 0 then.
+    /// Fraction of the motion, and so of each displacement, until the contact, 0..=1.
+    pub fraction: f32,
+    /// True if the capsule overlaps the skin at the start; `fraction` is 0 then.
     pub started_inside: bool,
-    /// The solver could not certify the distance within the tolerance. There is no contact before `time`.
+    /// The solver could not certify the distance within the tolerance. There is no contact before `fraction`.
     pub undecided: bool,
 }
 
@@ -265,7 +265,8 @@ impl<P: SurfacePose> SurfaceQuery<'_, '_, P> {
     /// The first contact of a moving capsule, or ball, with skin.
     ///
     /// Each end of the capsule moves straight by its own displacement, metres. The skin stands still meanwhile, or
-    /// moves over the last tick, as `target` says. Ties of time go to the smaller distance, then to the smaller entity.
+    /// moves over the last tick, as `target` says. Among equal fractions, the smaller distance wins, then the smaller
+    /// entity.
     pub fn cast_capsule(
         &self,
         capsule: &Capsule,
@@ -283,15 +284,15 @@ impl<P: SurfacePose> SurfaceQuery<'_, '_, P> {
             let found = EntitySweepHit {
                 hit: self.hit(entity, &hit.hit),
                 separation_normal: hit.separation_normal.as_vec3(),
-                time: hit.fraction as f32,
+                fraction: hit.fraction as f32,
                 started_inside: hit.started_inside,
                 undecided: hit.undecided,
             };
             Some((hit.fraction, found))
         });
-        let earlier = hits.min_by(|(time, a), (other, b)| {
-            let by_time = time.total_cmp(other);
-            by_time.then_with(|| by_distance(&a.hit, &b.hit))
+        let earlier = hits.min_by(|(fraction, a), (other, b)| {
+            let by_fraction = fraction.total_cmp(other);
+            by_fraction.then_with(|| by_distance(&a.hit, &b.hit))
         });
         earlier.map(|(_, hit)| hit)
     }

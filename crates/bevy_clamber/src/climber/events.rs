@@ -46,8 +46,10 @@ events! {
         /// The support that was lost; may be despawned.
         support: Option<Entity>,
     }
-    /// The support of a climber did not move exactly once since the last tick.
-    ClimberSupportMovedRepeatedly {
+    /// The support of a climber did not move exactly once since the climber's last tick, for example because a creature
+    /// was advanced twice: the motion of the other tick was not swept. Or the motion that the game's own obstacle reports
+    /// does not begin where the last one ended.
+    ClimberSkippedTicks {
         /// The support.
         support: Option<Entity>,
     }
@@ -187,7 +189,7 @@ pub(super) fn tell_event(event: &ClimberEvent, told: &Told<'_>, commands: &mut C
         ),
         ClimberEvent::SkippedTicks { obstacle } => tell(
             commands,
-            ClimberSupportMovedRepeatedly {
+            ClimberSkippedTicks {
                 entity,
                 support: touched(obstacle),
             },
