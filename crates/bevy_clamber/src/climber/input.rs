@@ -38,7 +38,7 @@ pub struct ClimberInput {
     pub actions: u32,
     /// Where the player aims: a direction in world space, for the game's [`ClimberModes`](crate::ClimberModes).
     pub aim: Vec3,
-    /// What struck the climber since the last tick; see [`ClimberInput::strike`].
+    /// What struck the climber since the last tick; see [`ClimberInput::strike`]. The fighter of an arena ignores it.
     pub blow: Option<ClimberBlow>,
 }
 
@@ -57,6 +57,9 @@ pub struct ClimberBlow {
 
 impl ClimberInput {
     /// Strikes the climber in the next tick. Several blows before it add up; the last one's dealer counts.
+    ///
+    /// An arena ignores blows in the input of its fighters: there, the game gives an `Order::Strike` by
+    /// `FightArena::order`.
     pub fn strike(&mut self, blow: ClimberBlow) {
         self.blow = Some(sum(self.blow, blow));
     }
