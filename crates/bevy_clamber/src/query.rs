@@ -45,8 +45,8 @@ pub struct SurfaceQuery<'w, 's, P: SurfacePose = TickPose> {
     origin: Res<'w, WorldOrigin>,
 }
 
-/// A [`SurfaceQuery`] on the skin as the last frame drew it: for what has to fit to the picture, such as cameras,
-/// lasers and cursors. What it finds can be anchored.
+/// A [`SurfaceQuery`] on the skin as the last frame drew it: for things that have to fit the picture, such as cameras,
+/// lasers and cursors. Its hits can be anchored.
 ///
 /// In `PostUpdate`, order systems with it after [`ClamberSystems::Sample`](crate::ClamberSystems::Sample): they then
 /// see the pose of this frame.
@@ -117,7 +117,7 @@ pub struct SurfaceFilter<'a> {
 }
 
 impl<'a> SurfaceFilter<'a> {
-    /// Selects all surfaces except those of these entities.
+    /// Selects all surfaces that are not on these entities.
     pub fn except(entities: &'a [Entity]) -> Self {
         Self {
             except: entities,
@@ -156,8 +156,8 @@ pub struct EntityHit {
     /// The collider's triangle; [`PosedSurface::source_triangle`] gives its index in the mesh asset.
     pub triangle: TriangleId,
     /// Weights of the triangle's three corners, in the order of
-    /// [`ColliderMesh::triangles`](clamber_surface::mesh::ColliderMesh::triangles). None is negative; they add up to 1,
-    /// up to rounding.
+    /// [`ColliderMesh::triangles`](clamber_surface::mesh::ColliderMesh::triangles). They are not negative, and add up
+    /// to 1, up to rounding.
     pub barycentric: [f32; 3],
     /// The part of the collider: the triangles that one joint moves most.
     pub part: PartId,
@@ -381,7 +381,7 @@ impl<P: SurfacePose> SurfaceQuery<'_, '_, P> {
 }
 
 impl SurfaceQuery<'_, '_> {
-    /// The surface of an entity; `None` if there is none, or if it has not had a valid pose yet.
+    /// The surface of an entity; `None` if the entity has no surface, or if that has not had a valid pose yet.
     pub fn get(&self, entity: Entity) -> Option<&PosedSurface> {
         let (_, surface) = self.surfaces.get(entity).ok()?;
         surface.is_placed().then_some(surface)
@@ -395,7 +395,7 @@ impl SurfaceQuery<'_, '_> {
 }
 
 impl DrawnSurfaceQuery<'_, '_> {
-    /// The surface of an entity; `None` if there is none, or if it cannot take the pose that was drawn.
+    /// The surface of an entity; `None` if the entity has no surface, or if that cannot take the pose that was drawn.
     pub fn get(&self, entity: Entity) -> Option<&SkinnedSurface> {
         self.surface(entity).ok()
     }

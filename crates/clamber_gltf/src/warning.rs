@@ -1,7 +1,7 @@
 use thiserror::Error;
 
-/// A part of a file that was skipped or repaired. `Display` gives a message of one line. It is an error for those who
-/// want to refuse such a file.
+/// A part of a file that was skipped or repaired. `Display` gives a message of one line. It implements
+/// [`Error`](std::error::Error), so that a program can refuse such a file.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ImportWarning {
