@@ -68,9 +68,9 @@ impl Contact {
 /// The first contact of a moving capsule, and the fraction of the motion until then.
 ///
 /// An [`Obstacle`] returns it with a [`Contact`]. [`sweep_shape`](crate::shapes::sweep_shape) returns it with a
-/// [`ShapeContact`](crate::shapes::ShapeContact), which has no material and no tag. The mover of `clamber_mover` returns
-/// it with a `MoverContact`, which adds to the [`Contact`] the id of the obstacle, the separation normal, and whether a
-/// sweep found it.
+/// [`ShapeContact`](crate::shapes::ShapeContact), which has no material and no tag. The mover of `clamber_mover`
+/// returns it with a `MoverContact`, which adds to the [`Contact`] the id of the obstacle, the separation normal, and
+/// whether a sweep found it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepContact<C = Contact> {
     /// Fraction of the motion, and so of each displacement, until the contact, 0..=1.

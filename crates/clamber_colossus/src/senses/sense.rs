@@ -80,7 +80,8 @@ impl Sense {
     /// Number of senses.
     pub(crate) const COUNT: usize = NAMES.len();
 
-    /// All senses of the creature as a whole, in the order of the variants, without the senses of regions and of the game.
+    /// All senses of the creature as a whole, in the order of the variants, without the senses of regions and of the
+    /// game.
     pub fn all() -> impl ExactSizeIterator<Item = Self> {
         NAMES.iter().map(|(sense, _)| *sense)
     }
