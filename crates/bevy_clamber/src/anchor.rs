@@ -51,7 +51,7 @@ pub struct AnchoredTo(pub Entity);
 
 /// The entities that are anchored to this surface, in no promised order; inserted beside the first of them.
 ///
-/// They are not despawned with the surface: [`AnchorLost`] is triggered on each.
+/// The anchored entities are not despawned with the surface: [`AnchorLost`] is triggered on each.
 #[derive(Component, Clone, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Clone, Debug, Default, PartialEq)]
 #[relationship_target(relationship = AnchoredTo)]

@@ -23,7 +23,7 @@ use crate::{ClimberCamera, ClimberCameraInput, ClimberInput};
 /// | crouch | C, or left control | east button (B, circle) |
 /// | turn the camera | mouse | right stick |
 ///
-/// Directions are those of the camera that follows the climber; without one, those of the world, -Z ahead.
+/// Directions are relative to the camera that follows the climber; without one, to the world, with -Z ahead.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 pub struct ClimberControls {
@@ -59,7 +59,7 @@ impl Plugin for ClimberControlsPlugin {
     }
 }
 
-/// What the player does in a frame.
+/// The player's actions in a frame.
 #[derive(Clone, Copy, Debug, Default)]
 struct Pressed {
     /// To the right, and ahead.

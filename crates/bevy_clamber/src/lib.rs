@@ -95,7 +95,7 @@ pub use clamber_fight;
 pub use clamber_gltf;
 /// Surfaces, their queries and meshes.
 pub use clamber_surface;
-/// What a climber can touch.
+/// The obstacles that a climber can touch.
 pub use clamber_world;
 /// Vectors and rotations; the same as in `bevy_math`.
 pub use glam;

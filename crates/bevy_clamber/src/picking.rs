@@ -23,8 +23,8 @@ use crate::{
 /// The point of skin that a pointer hits: the extra data of a `HitData`, whose position and outward unit normal are in
 /// world space.
 ///
-/// It is a material point, so it stays valid when the skin moves in later frames. A click, for example, has the hit of
-/// the frame before.
+/// The pick is a material point, so it stays valid when the skin moves in later frames. A click, for example, has the
+/// hit of the frame before.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -47,11 +47,11 @@ pub struct SurfacePick {
 /// Makes pointers hit skin in the pose that is drawn, not in the bind pose. Add it beside
 /// [`ClamberPlugins`](crate::ClamberPlugins) and Bevy's `DefaultPickingPlugins`.
 ///
-/// It runs in `PreUpdate`, in `PickingSystems::Backend`, after [`ClamberSystems::Build`]. It casts each ray of Bevy's
-/// `RayMap` at all surfaces, in the pose that the last frame drew, since that is the pose that the user has seen. It
-/// writes `PointerHits` with [`SurfacePick`] as extra data. The hit entity is the one with the [`PosedSurface`]; its
-/// skin is hit from either side. The depth is the distance from the ray's origin, which lies on the camera's near
-/// plane.
+/// The backend runs in `PreUpdate`, in `PickingSystems::Backend`, after [`ClamberSystems::Build`]. It casts each ray of
+/// Bevy's `RayMap` at all surfaces, in the pose that the last frame drew, since that is the pose that the user has
+/// seen. It writes `PointerHits` with [`SurfacePick`] as extra data. The hit entity is the one with the
+/// [`PosedSurface`]; its skin is hit from either side. The depth is the distance from the ray's origin, which lies on
+/// the camera's near plane.
 ///
 /// Like Bevy's backend for meshes, it skips entities that no view shows (`ViewVisibility`), that share no
 /// `RenderLayers` with the camera, or that are `Pickable::IGNORE`, and it gives the hits the camera's order. A surface

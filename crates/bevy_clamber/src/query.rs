@@ -45,8 +45,8 @@ pub struct SurfaceQuery<'w, 's, P: SurfacePose = TickPose> {
     origin: Res<'w, WorldOrigin>,
 }
 
-/// A [`SurfaceQuery`] on the skin as the last frame drew it: for what has to fit to the picture, such as cameras,
-/// lasers and cursors. What it finds can be anchored.
+/// A [`SurfaceQuery`] on the skin as the last frame drew it: for things that have to fit the picture, such as cameras,
+/// lasers and cursors. Its hits can be anchored.
 ///
 /// In `PostUpdate`, order systems with it after [`ClamberSystems::Sample`](crate::ClamberSystems::Sample): they then
 /// see the pose of this frame.
@@ -117,7 +117,7 @@ pub struct SurfaceFilter<'a> {
 }
 
 impl<'a> SurfaceFilter<'a> {
-    /// Selects all surfaces except those of these entities.
+    /// Selects all surfaces that are not on these entities.
     pub fn except(entities: &'a [Entity]) -> Self {
         Self {
             except: entities,
@@ -156,8 +156,8 @@ pub struct EntityHit {
     /// The collider's triangle; [`PosedSurface::source_triangle`] gives its index in the mesh asset.
     pub triangle: TriangleId,
     /// Weights of the triangle's three corners, in the order of
-    /// [`ColliderMesh::triangles`](clamber_surface::mesh::ColliderMesh::triangles). None is negative; they add up to 1,
-    /// up to rounding.
+    /// [`ColliderMesh::triangles`](clamber_surface::mesh::ColliderMesh::triangles). They are not negative, and add up
+    /// to 1, up to rounding.
     pub barycentric: [f32; 3],
     /// The part of the collider: the triangles that one joint moves most.
     pub part: PartId,
@@ -169,15 +169,15 @@ pub struct EntityHit {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EntitySweepHit {
-    /// The contact at `time`. Its distance is from the capsule's segment.
+    /// The contact at `fraction` of the motion. Its distance is from the capsule's segment.
     pub hit: EntityHit,
     /// Unit vector from the point to the capsule's segment; if the segment touches the triangle, the triangle's normal.
     pub separation_normal: Vec3,
-    /// Share of the motion that was made at the contact, 0..=1.
-    pub time: f32,
-    /// True if the capsule overlaps the skin at the start; `time` is 0 then.
+    /// Fraction of the motion, and so of each displacement, until the contact, 0..=1.
+    pub fraction: f32,
+    /// True if the capsule overlaps the skin at the start; `fraction` is 0 then.
     pub started_inside: bool,
-    /// The solver could not certify the distance within the tolerance. There is no contact before `time`.
+    /// The solver could not certify the distance within the tolerance. There is no contact before `fraction`.
     pub undecided: bool,
 }
 
@@ -265,7 +265,8 @@ impl<P: SurfacePose> SurfaceQuery<'_, '_, P> {
     /// The first contact of a moving capsule, or ball, with skin.
     ///
     /// Each end of the capsule moves straight by its own displacement, metres. The skin stands still meanwhile, or
-    /// moves over the last tick, as `target` says. Ties of time go to the smaller distance, then to the smaller entity.
+    /// moves over the last tick, as `target` says. Among equal fractions, the smaller distance wins, then the smaller
+    /// entity.
     pub fn cast_capsule(
         &self,
         capsule: &Capsule,
@@ -283,15 +284,15 @@ impl<P: SurfacePose> SurfaceQuery<'_, '_, P> {
             let found = EntitySweepHit {
                 hit: self.hit(entity, &hit.hit),
                 separation_normal: hit.separation_normal.as_vec3(),
-                time: hit.fraction as f32,
+                fraction: hit.fraction as f32,
                 started_inside: hit.started_inside,
                 undecided: hit.undecided,
             };
             Some((hit.fraction, found))
         });
-        let earlier = hits.min_by(|(time, a), (other, b)| {
-            let by_time = time.total_cmp(other);
-            by_time.then_with(|| by_distance(&a.hit, &b.hit))
+        let earlier = hits.min_by(|(fraction, a), (other, b)| {
+            let by_fraction = fraction.total_cmp(other);
+            by_fraction.then_with(|| by_distance(&a.hit, &b.hit))
         });
         earlier.map(|(_, hit)| hit)
     }
@@ -380,7 +381,7 @@ impl<P: SurfacePose> SurfaceQuery<'_, '_, P> {
 }
 
 impl SurfaceQuery<'_, '_> {
-    /// The surface of an entity; `None` if there is none, or if it has not had a valid pose yet.
+    /// The surface of an entity; `None` if the entity has no surface, or if that has not had a valid pose yet.
     pub fn get(&self, entity: Entity) -> Option<&PosedSurface> {
         let (_, surface) = self.surfaces.get(entity).ok()?;
         surface.is_placed().then_some(surface)
@@ -394,7 +395,7 @@ impl SurfaceQuery<'_, '_> {
 }
 
 impl DrawnSurfaceQuery<'_, '_> {
-    /// The surface of an entity; `None` if there is none, or if it cannot take the pose that was drawn.
+    /// The surface of an entity; `None` if the entity has no surface, or if that cannot take the pose that was drawn.
     pub fn get(&self, entity: Entity) -> Option<&SkinnedSurface> {
         self.surface(entity).ok()
     }

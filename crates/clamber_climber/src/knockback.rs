@@ -3,7 +3,7 @@ use glam::DVec3;
 
 use crate::ClimberError;
 
-/// What a blow does to a climber. It takes effect in the step that gets it in
+/// The effect of a blow on a climber. It takes place in the step that gets it in
 /// [`StepRules::knockback`](crate::StepRules::knockback).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

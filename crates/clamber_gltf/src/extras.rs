@@ -27,7 +27,8 @@ struct Extras<T> {
 struct MaterialExtras {
     #[serde(default)]
     surface: Surface,
-    /// A key of old files, with any value: climbers find ledges by their shape.
+    /// A key of old files. It is ignored with a warning, whatever its value (also `false`, but not `null`): climbers
+    /// find ledges by their shape.
     ledge: Option<serde::de::IgnoredAny>,
     #[serde(default)]
     user: u32,

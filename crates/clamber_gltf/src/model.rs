@@ -9,9 +9,9 @@ use crate::warning::ImportWarning;
 pub struct Model {
     /// Skeleton, clips, collider and weak points.
     ///
-    /// - The joints are those of the skins, in the skins' order, then the nodes of rigid meshes, then all other nodes
-    ///   above these. A node is several joints if skins give it different inverse bind matrices. Node 3 without a name
-    ///   is called `"node 3"`.
+    /// - The joints are the joints of the skins, in the skins' order, then the nodes of rigid meshes, then all other
+    ///   nodes above these. A node is several joints if skins give it different inverse bind matrices. Node 3 without a
+    ///   name is called `"node 3"`.
     /// - The clips have the order of the file. Animation 3 without a name is called `"clip 3"`.
     /// - The collider consists of all collision meshes, merged.
     /// - In `collider_materials`, materials of the same name are merged; triangles without a named material are left

@@ -1,7 +1,7 @@
 use thiserror::Error;
 
-/// A part of a file that was skipped or repaired. `Display` gives a message of one line. It is an error for those who
-/// want to refuse such a file.
+/// A part of a file that was skipped or repaired. `Display` gives a message of one line. It implements
+/// [`Error`](std::error::Error), so that a program can refuse such a file.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ImportWarning {
@@ -57,7 +57,8 @@ pub enum ImportWarning {
         /// Number of materials.
         materials: usize,
     },
-    /// Materials whose extras have the key `ledge`. It is ignored: climbers find ledges by their shape.
+    /// Materials whose extras have the key `ledge`, with any value, also `false`. It is ignored: climbers find ledges
+    /// by their shape.
     #[error(
         "ignored the key `ledge` of materials, since climbers find ledges by their shape: {materials}"
     )]

@@ -27,8 +27,9 @@ pub struct GraphConfig {
     /// `clamber_colossus::Creature::rate`. Default: 1.
     pub clip_rate: f64,
     /// Parts of the skin that can be removed one by one, such as plates of armour. The skin below them is divided into
-    /// patches as well. A living creature's plates are `clamber_colossus::CreatureKind::plates`. Default: none; at most
-    /// 65,536.
+    /// patches as well. Every triangle must exist in the skin ([`NavigationError::Surface`]). In the division into
+    /// patches, a triangle that is in several plates belongs to the last of them. A living creature's plates are
+    /// `clamber_colossus::CreatureKind::plates`. Default: none; at most 65,536.
     pub plates: Vec<Vec<TriangleId>>,
 }
 

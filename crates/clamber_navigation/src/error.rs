@@ -53,7 +53,8 @@ pub enum NavigationError {
     /// The skeleton cannot be posed.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// The skin cannot be posed.
+    /// The skin cannot be posed, or one of [`GraphConfig::plates`](crate::GraphConfig::plates) has a triangle that the
+    /// skin does not have.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
 }

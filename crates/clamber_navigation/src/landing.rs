@@ -48,7 +48,7 @@ impl FutureSkin {
     ) -> Result<Option<Landing>, NavigationError> {
         check_step(dt)?;
         let mut flies = airborne.climber.clone();
-        // What struck the climber has struck it already.
+        // A blow has already struck the climber.
         let rules = StepRules {
             knockback: None,
             ..*airborne.rules

@@ -1,7 +1,7 @@
 /// A 64-bit hash for comparing runs, peers and files: equal data have equal hashes, on every platform.
 ///
-/// If any bit of the data differs, the hash differs too, in all likelihood. It is not for hash tables, and no
-/// protection against somebody who looks for two inputs with the same hash.
+/// If any bit of the data differs, the hash differs too, in all likelihood. It is not for hash tables, and does
+/// not protect against an attacker that looks for two inputs with the same hash.
 ///
 /// Each word is folded by a rotation, an exclusive or and a multiplication, as in rustc's `FxHasher`. Two folds take
 /// turns, since within a fold each multiplication waits for the one before it.

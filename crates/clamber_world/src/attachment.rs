@@ -151,8 +151,8 @@ impl Attachment {
     ///
     /// `slack` is the largest allowed distance, metres, between the stored position and the previous position that the
     /// obstacle reports. It must be at least 0. For a character of human size 0.01 is right: more than rounding, less
-    /// than a player sees. A larger distance is allowed for an obstacle that was [placed](Continuity::Teleported), and
-    /// up to 8 times its last move ([`Continuity::SkippedTicks`]).
+    /// than a player sees. A larger distance is allowed for an obstacle that was [teleported](Continuity::Teleported),
+    /// and up to 8 times its last move ([`Continuity::SkippedTicks`]).
     ///
     /// Returns `None` and changes nothing if the material is gone. The same happens if the distance is too large, which
     /// means that the id now names another obstacle.

@@ -65,13 +65,18 @@ impl Contact {
     }
 }
 
-/// The first contact of a moving capsule: with an obstacle, or as `SweepContact<ShapeContact>` with a
-/// [shape](crate::shapes::sweep_shape).
+/// The first contact of a moving capsule, and the fraction of the motion until then.
+///
+/// An [`Obstacle`] returns it with a [`Contact`]. [`sweep_shape`](crate::shapes::sweep_shape) returns it with a
+/// [`ShapeContact`](crate::shapes::ShapeContact), which has no material and no tag. The mover of `clamber_mover`
+/// returns it with a `MoverContact`, which adds to the [`Contact`] the id of the obstacle, the separation normal, and
+/// whether a sweep found it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepContact<C = Contact> {
-    /// Fraction of the tick, and so of each displacement, until the contact, 0..=1.
+    /// Fraction of the motion, and so of each displacement, until the contact, 0..=1.
     pub fraction: f64,
-    /// The contact at that time. Its distance is from the capsule's segment.
+    /// The contact at that fraction of the motion. Its distance is measured from the capsule's segment: about the
+    /// radius if the capsule gets there by its motion, less if they overlap at the start.
     pub contact: C,
     /// Unit vector from the contact's point towards the capsule's segment. Where the segment crosses a triangle or is
     /// inside a solid, it is the contact's normal.

@@ -80,7 +80,7 @@ impl RigidPose {
     /// `before` at the start of the tick and is `self` now. `origin` is the world position of the poses' origin. `None`
     /// unless `dt` is positive and the current position is finite; `before` is not checked.
     ///
-    /// If the two poses are equal, the point counts as [placed](PointMotion::was_teleported).
+    /// If the two poses are equal, the point counts as [teleported](PointMotion::was_teleported).
     pub fn motion_since(
         &self,
         before: &Self,

@@ -18,8 +18,10 @@ pub struct ArenaCreature(pub CreatureId);
 /// `Transform`: the centre of the climber's ball, with -Z along its heading.
 ///
 /// Fill its [`ClimberInput`], or let [`ClimberControls`](crate::ClimberControls) do it. `actions` has the bits of
-/// [`clamber_fight::actions`]. A blow in it is ignored: the arena deals the blows. With a
-/// [`ClimberFigure`](crate::ClimberFigure), it is drawn as a humanoid.
+/// [`clamber_fight::actions`]. A blow in it is ignored, so [`ClimberInput::strike`] does nothing: give the arena an
+/// [`Order::Strike`](clamber_fight::Order::Strike) by [`FightArena::order`](super::FightArena::order).
+/// [`ClimberRule`](crate::ClimberRule), [`ClimberModes`](crate::ClimberModes) and [`AirVelocity`](crate::AirVelocity)
+/// have no effect on it. With a [`ClimberFigure`](crate::ClimberFigure), it is drawn as a humanoid.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 #[require(Transform, ClimberInput, LatchedInput)]
 pub struct ArenaFighter(pub FighterId);

@@ -36,7 +36,7 @@ use clamber_fight::{Arena, ArenaEvent, Order};
 /// # let _ = spawn;
 /// ```
 ///
-/// What else the game does to it goes by [`FightArena::order`]. To save, load and roll back, use the arena itself:
+/// The game changes the fight by [`FightArena::order`]. To save, load and roll back, use the arena itself:
 /// [`FightArena::arena_mut`]. Do it before [`ClamberSystems::Climb`](crate::ClamberSystems::Climb): entities show it in
 /// the same tick then, otherwise in the next.
 #[derive(Resource, Clone, Debug)]
@@ -78,7 +78,7 @@ impl Deref for FightArena {
     }
 }
 
-/// Something happened in the [`FightArena`]: written as a message, and triggered for observers, in the tick in which it
-/// happened. Places in it are in clamber's world space: that of Bevy plus [`WorldOrigin`](crate::WorldOrigin).
+/// An event in the [`FightArena`]: written as a message, and triggered for observers, in the tick in which it happened.
+/// Its places are in clamber's world space: Bevy's world space plus [`WorldOrigin`](crate::WorldOrigin).
 #[derive(Event, Message, Clone, Debug, PartialEq)]
 pub struct FightEvent(pub ArenaEvent);

@@ -63,7 +63,7 @@ pub(super) fn projectiles(
     mut commands: Commands,
 ) {
     let all = fight.as_ref().map_or(&[][..], |fight| fight.projectiles());
-    // Both have ascending numbers, but entities are in no order.
+    // The arena's projectiles are in ascending order of their ids, but entities are in no order.
     let mut is_shown = vec![false; all.len()];
     for (entity, projectile, mut found) in &mut shown {
         let index = all.binary_search_by_key(&projectile.0, |one| one.id).ok();
@@ -76,7 +76,7 @@ pub(super) fn projectiles(
                 let there = placed(place.tip, place.direction, DVec3::Y, &origin);
                 found.set_if_neq(there);
             }
-            // It stays where it was until its arena lets go of it.
+            // The entity stays where it was until its arena drops the projectile.
             (Some(_), None) => {}
             (None, _) => commands.entity(entity).try_despawn(),
         }

@@ -3,7 +3,7 @@ use clamber_world::{Obstacle, ObstacleId};
 
 use crate::climber::Touchable;
 
-/// What an arena's fighters, creatures and arrows can touch beside each other: the worlds of physics engines, and
+/// The terrain that an arena's fighters, creatures and arrows can touch: the worlds of physics engines, and
 /// [`CustomObstacle`](crate::CustomObstacle)s. For a game that steps its arena itself, such as in a rollback session.
 ///
 /// ```

@@ -7,8 +7,8 @@ use glam::DVec3;
 /// Lets a camera orbit a [`Climber`](crate::Climber): insert it on an entity with a camera.
 /// [`ClimberCameraPlugin`](crate::ClimberCameraPlugin) then writes the entity's `Transform` in each frame.
 ///
-/// It begins behind the climber. It moves with what carries the climber, without a lag, and follows the climber's own
-/// motion smoothly. It keeps [`radius`](Self::radius) away from skin as it is drawn, from terrain and from bodies:
+/// The camera begins behind the climber. It moves with the climber's support, without a lag, and follows the climber's
+/// own motion smoothly. It keeps [`radius`](Self::radius) away from skin as it is drawn, from terrain and from bodies:
 /// where they are in the way, it comes nearer at once, and goes back over half a second. Fill [`ClimberCameraInput`] to
 /// turn it.
 ///
@@ -95,7 +95,7 @@ pub struct ClimberCameraInput {
     pub swing: Vec2,
 }
 
-/// What a camera remembers.
+/// The memory of a camera from frame to frame.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub(super) struct CameraState {
     pub(super) is_placed: bool,

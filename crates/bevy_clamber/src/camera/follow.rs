@@ -17,7 +17,7 @@ const BACK: f64 = 0.2;
 /// How far behind a fast climber it looks at most, as a share of its distance.
 const LAG: f64 = 0.25;
 
-/// Largest radius of the camera's ball, as a share of that of the climber's.
+/// Largest radius of the camera's ball, as a share of the radius of the climber's ball.
 const LARGEST: f64 = 0.75;
 
 /// A climber that is farther away than this many times the camera's distance was teleported.
@@ -61,8 +61,8 @@ pub(super) fn follow(
             let ball = WorldCapsule::ball(from, radius);
             touchable.free_way(filter, &ball, way).unwrap_or(1.0)
         };
-        // The body's own place is free. What it looks at need not be: a larger ball goes there, so that the camera's
-        // ball touches nothing where its way begins.
+        // The body's own place is free. The point that it looks at may not be free: a larger ball goes there, so
+        // that the camera's ball touches nothing where its way begins.
         let rise = state.pivot - body_place;
         let larger = 0.5 * (radius + body_radius);
         let pivot = body_place + rise * free(larger, body_place, rise);

@@ -42,7 +42,7 @@ use super::shown::Shown;
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 #[require(Transform, ClimberInput, LatchedInput)]
 pub struct Climber {
-    /// Its body and abilities.
+    /// The climber's body and abilities.
     pub config: ClimberConfig,
 }
 
@@ -107,7 +107,7 @@ impl Deref for ClimberState {
     }
 }
 
-/// What a [`Climber`] touches. Without this component, it touches everything.
+/// Selects the obstacles that a [`Climber`] touches. Without this component, it touches everything.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 pub struct ClimberFilter {
@@ -128,7 +128,7 @@ impl Default for ClimberFilter {
     }
 }
 
-/// A [`Climber`]'s body, as of the last tick: what it touched, and how much room it takes. Inserted by its first tick.
+/// A [`Climber`]'s body, as of the last tick: its contacts, and how much room it takes. Inserted by its first tick.
 #[derive(Component, Clone, Debug)]
 pub struct ClimberBody {
     pub(super) climber: clamber_climber::Climber,
@@ -136,7 +136,7 @@ pub struct ClimberBody {
     /// The mesh of the surface that supports it.
     pub(super) support_mesh: Option<(ObstacleId, MeshId)>,
     pub(super) shown: Shown,
-    /// What was drawn last: the transform that this crate has written, and the origin that it is relative to.
+    /// The last drawn place: the transform that this crate has written, and the origin that it is relative to.
     pub(super) drawn: Transform,
     pub(super) origin: DVec3,
 }
@@ -179,8 +179,8 @@ impl ClimberBody {
         self.climber.body()
     }
 
-    /// How far its support has carried it from the last frame to this one, metres, as they are drawn: for what moves
-    /// with it, such as a camera.
+    /// How far its support has carried it from the last frame to this one, metres, as they are drawn: for
+    /// entities that move with it, such as a camera.
     pub fn carried(&self) -> DVec3 {
         self.shown.carried()
     }

@@ -1,4 +1,4 @@
-//! What happens to climbers, as events for observers and as messages for readers.
+//! The events of climbers, for observers, and as messages for readers.
 
 use bevy_app::App;
 use bevy_ecs::prelude::*;
@@ -46,8 +46,10 @@ events! {
         /// The support that was lost; may be despawned.
         support: Option<Entity>,
     }
-    /// The support of a climber did not move exactly once since the last tick.
-    ClimberSupportMovedRepeatedly {
+    /// The support of a climber did not move exactly once since the climber's last tick, for example because a creature
+    /// was advanced twice: the motion of the other tick was not swept. Or the motion that the game's own obstacle
+    /// reports does not begin where the last one ended.
+    ClimberSkippedTicks {
         /// The support.
         support: Option<Entity>,
     }
@@ -60,7 +62,7 @@ events! {
     }
     /// A climber gripped something.
     ClimberGrabbed {
-        /// What it grips.
+        /// The entity that it grips.
         hold: Option<Entity>,
         /// The gripped point.
         point: Vec3,
@@ -72,14 +74,14 @@ events! {
     }
     /// A climber caught a ledge with its hands.
     ClimberCaughtLedge {
-        /// What the ledge is part of.
+        /// The entity that the ledge is part of.
         ledge: Option<Entity>,
         /// The point that its hands hold.
         point: Vec3,
     }
     /// A climber's hands slipped off a hold or a ledge: it passed too fast, or stamina did not suffice.
     ClimberHandsSlipped {
-        /// What it could not hold.
+        /// The entity that it could not hold.
         hold: Option<Entity>,
         /// Speed of the climber relative to the hold, metres a second.
         speed: f32,
@@ -97,16 +99,16 @@ events! {
     }
     /// A climber was knocked over.
     ClimberTumbled {
-        /// Its support at that time; `None` in the air, while sliding, and if the support has no entity.
+        /// The climber's support at that time; `None` in the air, while sliding, and if the support has no entity.
         support: Option<Entity>,
-        /// Who dealt the blow.
+        /// The dealer of the blow.
         by: Option<Entity>,
     }
     /// A blow that does not make it tumble pushed a climber off its feet or its hold.
     ClimberKnockedOff {
-        /// Its support at that time.
+        /// The climber's support at that time.
         support: Option<Entity>,
-        /// Who dealt the blow.
+        /// The dealer of the blow.
         by: Option<Entity>,
     }
     /// Obstacles leave a climber too little room.
@@ -128,11 +130,11 @@ events! {
         /// The mode now.
         to: ClimberMode,
     }
-    /// One of the game's [`ClimberModes`](crate::ClimberModes) reported something.
+    /// A mode of the game's [`ClimberModes`](crate::ClimberModes) made a report.
     ClimberModeReported {
         /// Id of the mode.
         mode: u16,
-        /// What happened; the mode defines its meaning.
+        /// Number of the report; the mode defines its meaning.
         what: u32,
         /// A value; the mode defines its meaning.
         value: f64,
@@ -141,7 +143,7 @@ events! {
     ClimberNotFinite {}
 }
 
-/// What an event needs to know beside itself.
+/// The data that an event needs beside itself.
 pub(super) struct Told<'a> {
     pub(super) entity: Entity,
     pub(super) hit_points: f64,
@@ -187,7 +189,7 @@ pub(super) fn tell_event(event: &ClimberEvent, told: &Told<'_>, commands: &mut C
         ),
         ClimberEvent::SkippedTicks { obstacle } => tell(
             commands,
-            ClimberSupportMovedRepeatedly {
+            ClimberSkippedTicks {
                 entity,
                 support: touched(obstacle),
             },

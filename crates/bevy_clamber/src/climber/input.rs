@@ -5,13 +5,13 @@ use bevy_time::{Time, Virtual};
 use clamber_climber::Knockback;
 use clamber_world::ObstacleId;
 
-/// What the player of a [`Climber`](crate::Climber) asks for. Any input crate, network or bot can fill it, in any
+/// The input of the player of a [`Climber`](crate::Climber). Any input crate, network or bot can fill it, in any
 /// schedule.
 ///
 /// Directions are used as they are at each tick. A press of `jump` is kept until a tick comes, and only that tick gets
 /// it, however many frames there are in a tick, or ticks in a frame; it is then set to false. A button that is down in
-/// any frame since the last tick counts as down in the next one, so that a short tap is not lost. What was pressed
-/// while the game was paused is forgotten.
+/// any frame since the last tick counts as down in the next one, so that a short tap is not lost. Presses while
+/// the game is paused are forgotten.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 pub struct ClimberInput {
@@ -38,7 +38,8 @@ pub struct ClimberInput {
     pub actions: u32,
     /// Where the player aims: a direction in world space, for the game's [`ClimberModes`](crate::ClimberModes).
     pub aim: Vec3,
-    /// What struck the climber since the last tick; see [`ClimberInput::strike`].
+    /// The blows that struck the climber since the last tick, as one; see [`ClimberInput::strike`]. The fighter of an
+    /// arena ignores it.
     pub blow: Option<ClimberBlow>,
 }
 
@@ -51,12 +52,15 @@ pub struct ClimberBlow {
     /// Hit points that it costs, 0 to 1. Ignored without
     /// [`ClimberConfig::health`](clamber_climber::ClimberConfig::health).
     pub damage: f32,
-    /// Who dealt the blow. Events repeat it.
+    /// The dealer of the blow. Events repeat it.
     pub by: Option<Entity>,
 }
 
 impl ClimberInput {
     /// Strikes the climber in the next tick. Several blows before it add up; the last one's dealer counts.
+    ///
+    /// An arena ignores blows in the input of its fighters: there, the game gives an `Order::Strike` by
+    /// `FightArena::order`.
     pub fn strike(&mut self, blow: ClimberBlow) {
         self.blow = Some(sum(self.blow, blow));
     }
@@ -77,7 +81,7 @@ fn sum(earlier: Option<ClimberBlow>, later: ClimberBlow) -> ClimberBlow {
     })
 }
 
-/// What was pressed since the last tick.
+/// The buttons that were pressed since the last tick, and the blows.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub(crate) struct LatchedInput {
     jump: bool,

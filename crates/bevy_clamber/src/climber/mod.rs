@@ -1,4 +1,4 @@
-//! Climbers on entities: what they touch, their ticks, their events, and where they are drawn.
+//! Climbers on entities: their obstacles, their ticks, their events, and where they are drawn.
 
 mod component;
 mod draw;

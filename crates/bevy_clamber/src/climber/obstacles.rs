@@ -1,4 +1,4 @@
-//! What climbers can touch, found in the world.
+//! The obstacles that climbers can touch, found in the world.
 
 use std::any::Any;
 
@@ -80,7 +80,7 @@ const ARENA_AVIAN: ObstacleId = ObstacleId((1 << 62) - 1);
 #[cfg(all(feature = "rapier", feature = "colossus"))]
 const ARENA_RAPIER: ObstacleId = ObstacleId((1 << 62) - 2);
 
-/// Maps the entities of an attachment. An engine's world is none: the points of avian's are on entities, those of
+/// Maps the entities of an attachment. An engine's world is no entity: in avian's, the points are on entities, in
 /// rapier's on handles.
 pub(super) fn map_entities(on: &mut Attachment, mapper: &mut impl EntityMapper) {
     let bits = match on.obstacle {
@@ -217,7 +217,7 @@ impl Touchable<'_, '_> {
         })
     }
 
-    /// Calls `look` with the terrain, by ascending id. The ids are below those of an arena's creatures.
+    /// Calls `look` with the terrain, by ascending id. The ids are below the ids of an arena's creatures.
     #[cfg(feature = "colossus")]
     pub(crate) fn terrain_by_id<T>(
         &self,
@@ -270,7 +270,7 @@ impl Touchable<'_, '_> {
     }
 }
 
-/// What a camera can bump into: skin as it is drawn, and the obstacles of the last tick.
+/// The obstacles that a camera can bump into: skin as it is drawn, and the obstacles of the last tick.
 #[derive(SystemParam)]
 pub(crate) struct DrawnTouchable<'w, 's> {
     surfaces: Query<'w, 's, (Entity, &'static PosedSurface, &'static DrawnSurface)>,

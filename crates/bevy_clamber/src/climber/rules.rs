@@ -25,7 +25,7 @@ use glam::DVec3;
 /// }));
 /// ```
 ///
-/// It must be a pure function: during a tick it is called any number of times and in any order.
+/// The rule must be a pure function: during a tick it is called any number of times and in any order.
 #[derive(Resource, Clone)]
 pub struct ClimberRule(Arc<RuleFn>);
 
@@ -37,8 +37,8 @@ type RuleFn = dyn Fn(&ClimberTouch<'_>) -> ContactRule + Send + Sync;
 pub struct ClimberTouch<'a> {
     /// The climber.
     pub climber: Entity,
-    /// What it touches: a surface, a climber, a [`CustomObstacle`](crate::CustomObstacle), or a collider of the
-    /// physics engine. `None` for a collider that has no entity.
+    /// The obstacle that it touches: a surface, a climber, a [`CustomObstacle`](crate::CustomObstacle), or a collider
+    /// of the physics engine. `None` for a collider that has no entity.
     pub entity: Option<Entity>,
     /// The contact, in world space, and the climber as it was at the tick's beginning.
     pub query: &'a ContactQuery<'a>,

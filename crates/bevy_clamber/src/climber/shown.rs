@@ -1,10 +1,10 @@
-//! What of a climber's last two ticks is drawn.
+//! How a climber is drawn between its last two ticks.
 //!
 //! A frame lies between two ticks, so a climber is drawn between its last two states. On skin, both are evaluated on
 //! the skin as the frame draws it, which is ahead of the skin that ticks see: the climber is drawn where it belongs on
 //! the skin, and not where the skin was. In the air, and on rigid bodies, they are positions in the world. A climber
-//! that lands or leaves passes from one to the other: both states of that tick are taken relative to the skin. What
-//! still differs where the two meet is an offset, which fades.
+//! that lands or leaves passes from one to the other: both states of that tick are taken relative to the skin. The
+//! difference that is left where the two meet is an offset, which fades.
 
 use clamber_climber::ClimberState;
 use clamber_surface::surface::SkinnedSurface;
@@ -36,7 +36,7 @@ pub(super) struct Shown {
     now: Spot,
     /// Ticks since the last frame from which on the climber is drawn in another way.
     switches: Vec<Switch>,
-    /// What is left of the difference between two ways to draw, metres and metres a second.
+    /// The rest of the difference between two ways to draw, metres and metres a second.
     offset: DVec3,
     fading: DVec3,
     /// A place on skin, and where the last frame drew it.
@@ -156,7 +156,7 @@ impl Shown {
     }
 
     /// Position and heading in a frame that lies at a fraction of a tick after the last tick, and `dt` seconds after
-    /// the last frame. `base_velocity` is the velocity of what carries the climber, if that is no skin. `drawn` gives
+    /// the last frame. `base_velocity` is the velocity of the climber's support, if that is no skin. `drawn` gives
     /// the surface of an attachment, as the frame draws it.
     pub(super) fn draw<'a>(
         &mut self,

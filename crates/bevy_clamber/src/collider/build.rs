@@ -169,7 +169,7 @@ pub(crate) fn build_colliders(
                 }
                 let failure = ColliderStatus::Failed(ColliderFailure::new(error));
                 if *status != failure {
-                    // What a mesh lacks is logged once for all its entities.
+                    // A mesh's own errors are logged once for all its entities.
                     if let ColliderStatus::Failed(failure) = &failure
                         && failure.error().is_some_and(ColliderError::is_of_entity)
                     {
@@ -190,7 +190,7 @@ fn set(status: &mut Mut<'_, ColliderStatus>, to: ColliderStatus) {
 /// How long a collider may wait before what it waits for is logged.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Logs once for what a collider waits that does so for long.
+/// If a collider waits for long, logs once what it waits for.
 pub(crate) fn tell_waiting(
     colliders: Query<(Entity, Ref<ColliderStatus>)>,
     time: Res<Time<Real>>,

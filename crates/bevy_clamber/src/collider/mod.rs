@@ -45,8 +45,8 @@ pub struct SkinnedCollider {
     pub joints: PoseTiming,
     /// When the entities above the joints are moved, such as the root of a scene. Default: once a frame.
     pub root: PoseTiming,
-    /// The highest plausible speed of a joint, metres a second. Default: 100. What moves faster was teleported: the
-    /// skin has no velocity in that tick, and a warning is logged once.
+    /// The highest plausible speed of a joint, metres a second. Default: 100. A skin that moves faster counts as
+    /// teleported: it has no velocity in that tick, and a warning is logged once.
     pub max_speed: f32,
 }
 
@@ -108,7 +108,7 @@ impl Default for ColliderStatus {
     }
 }
 
-/// What a [`SkinnedCollider`] waits for.
+/// The reason why a [`SkinnedCollider`] waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect, thiserror::Error)]
 #[reflect(Clone, Debug, PartialEq, Hash)]
 #[non_exhaustive]

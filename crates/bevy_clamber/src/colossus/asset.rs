@@ -10,7 +10,7 @@ const EXTENSION: &str = "brain.json";
 /// A brain is checked at this length of a tick when it is loaded, seconds; it is made for the app's own tick later.
 const ANY_TICK: f64 = 1.0 / 60.0;
 
-/// A brain, loaded from a file whose name ends with `.brain.json`: see [`clamber_colossus::brain`] for what it says.
+/// A brain, loaded from a file whose name ends with `.brain.json`: see [`clamber_colossus::brain`] for its content.
 #[derive(Asset, TypePath, Clone, Debug, PartialEq)]
 pub struct ColossusBrain {
     text: String,

@@ -36,15 +36,15 @@ use super::ColossusBrain;
 /// ```
 #[derive(Component, Clone, Debug, PartialEq)]
 pub struct Colossus {
-    /// Its brain.
+    /// The creature's brain.
     pub brain: Handle<ColossusBrain>,
-    /// Seed of its lots.
+    /// Seed of its random numbers.
     pub seed: u64,
-    /// It does not walk further from where it began, metres.
+    /// Largest distance to which it walks from its first place, metres.
     pub arena: f64,
-    /// It does not walk onto steeper ground, radians.
+    /// Steepest ground that it walks onto, radians.
     pub most_slope: f64,
-    /// It does not see further, metres.
+    /// Largest distance at which it sees, metres.
     pub sight: f64,
 }
 

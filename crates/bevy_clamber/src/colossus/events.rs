@@ -1,4 +1,4 @@
-//! What happens to a [`Colossus`](crate::Colossus), as events for observers and as messages for readers.
+//! The events of a [`Colossus`](crate::Colossus), for observers, and as messages for readers.
 
 use bevy_app::App;
 use bevy_ecs::prelude::*;
@@ -51,7 +51,7 @@ events! {
     }
     /// A creature threw something: [`Creature::shots`] tells where it is, as long as it flies.
     ColossusThrew {
-        /// Its number, by which [`Creature::shots`] has it.
+        /// The shot's number, by which [`Creature::shots`] has it.
         number: u64,
         /// From where, in Bevy's world space.
         place: Vec3,
@@ -60,7 +60,7 @@ events! {
         /// The state whose attack it is of, with the names of those around it.
         attack: String,
     }
-    /// What a creature threw has struck somebody, or met terrain or another creature.
+    /// A shot of a creature has struck a person, or met terrain or another creature.
     ColossusBurst {
         /// Its number.
         number: u64,
@@ -201,7 +201,7 @@ pub(super) fn tell_all(
     }
 }
 
-/// Tells whom a creature struck.
+/// Tells which climbers a creature struck.
 pub(super) fn tell_struck(
     (entity, climber): (Entity, Entity),
     creature: &Creature,

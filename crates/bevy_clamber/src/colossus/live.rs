@@ -115,7 +115,7 @@ fn make(
     Ok(creature)
 }
 
-/// What creatures sense, and whom they strike.
+/// The climbers that creatures sense and strike.
 type Climbers<'w, 's> = Query<
     'w,
     's,

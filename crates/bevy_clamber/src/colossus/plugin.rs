@@ -18,7 +18,7 @@ pub struct ColossusPlugin {
 }
 
 impl ColossusPlugin {
-    /// Lets creatures live in this schedule of the fixed loop, which is that of [`RigPlayerPlugin`].
+    /// Lets creatures live in this schedule of the fixed loop. Use the schedule of [`RigPlayerPlugin`].
     pub fn in_schedule(schedule: impl ScheduleLabel) -> Self {
         Self {
             schedule: schedule.intern(),

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use crate::{ClimberBody, ClimberState, PosedSurface};
 
-/// Something that every [`Colossus`](super::Colossus) hears: a message, for a footfall, a horn or a falling rock.
+/// A noise that every [`Colossus`](super::Colossus) hears: a message, for a footfall, a horn or a falling rock.
 #[derive(Message, Clone, Copy, Debug, PartialEq)]
 pub struct ColossusNoise {
     /// Where it comes from, in Bevy's world space.

@@ -34,7 +34,7 @@ pub struct TooManyJoints(pub usize);
 #[non_exhaustive]
 pub struct RigAssets {
     model: Arc<Model>,
-    /// Its clips; or why they do not fit its skeleton.
+    /// The model's clips, or the reason why they do not fit its skeleton.
     animations: Result<Arc<AnimationSet>, AnimationError>,
     inverse_bindposes: Handle<SkinnedMeshInverseBindposes>,
     meshes: Vec<RigMesh>,

@@ -8,7 +8,7 @@ const INFLUENCES: usize = 4;
 
 /// A mesh asset of one primitive, with the vertices that its triangles use.
 ///
-/// It has positions, joints and weights, and, if the file has them, normals, two sets of texture coordinates and
+/// The mesh has positions, joints and weights, and, if the file has them, normals, two sets of texture coordinates and
 /// colours. A vertex keeps its four strongest influences; ties go to the smaller joint id. Their weights sum to 1.
 pub(super) fn mesh(visual: &VisualMesh, primitive: &VisualPrimitive) -> Mesh {
     let (used, indices) = used_vertices(visual.positions.len(), &primitive.triangles);

@@ -63,7 +63,7 @@ pub struct RigMarkerPassed {
     pub marker: String,
 }
 
-/// What a creature's player remembers beside the component.
+/// The memory of a creature's player beside the component.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Played {
     /// The clip of the last pose.

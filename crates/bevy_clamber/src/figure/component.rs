@@ -15,7 +15,7 @@ use crate::{SpawnedRig, WorldOrigin};
 ///
 /// The rig is an entity of its own, without a parent, that `RigAssets` or your own loader has spawned. Any humanoid
 /// that [`Humanoid::find`](clamber_body::Humanoid::find) knows will do; `clamber_body` says how a file without clips
-/// gets those of another one.
+/// gets the clips of another one.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -69,13 +69,13 @@ pub struct WrongJoints {
 
 /// A hand or foot of a [`ClimberFigure`] came down on something: for sounds, dust and prints.
 ///
-/// Triggered on the climber's entity, and written as a message. Places are in clamber's world space: that of Bevy plus
-/// [`WorldOrigin`](crate::WorldOrigin).
+/// Triggered on the climber's entity, and written as a message. Places are in clamber's world space: Bevy's world space
+/// plus [`WorldOrigin`](crate::WorldOrigin).
 #[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]
 pub struct ClimberPlant {
     /// The climber.
     pub entity: Entity,
-    /// What came down where, and how fast.
+    /// The hand or foot, where it came down, and how fast.
     pub plant: Plant,
 }
 
@@ -114,12 +114,12 @@ impl ClimberFigure {
         })
     }
 
-    /// What it shares with others of its kind.
+    /// The data that it shares with others of its kind.
     pub fn figure(&self) -> &Arc<Figure> {
         &self.figure
     }
 
-    /// The body as the last frame drew it: what hands and feet hold.
+    /// The body as the last frame drew it, with the holds of hands and feet.
     pub fn body(&self) -> &Body {
         &self.body
     }

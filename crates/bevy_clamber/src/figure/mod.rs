@@ -1,4 +1,4 @@
-//! The body of a climber, drawn: a humanoid rig whose hands and feet are on what the climber touches.
+//! The body of a climber, drawn: a humanoid rig whose hands and feet are on the surfaces that the climber touches.
 
 mod component;
 mod pose;

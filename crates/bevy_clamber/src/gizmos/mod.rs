@@ -57,9 +57,9 @@ impl Default for SurfaceGizmos {
 /// Draws the gizmos that [`SurfaceGizmos`] selects. Add it beside Bevy's `GizmoPlugin` and
 /// [`ClamberPlugins`](crate::ClamberPlugins), with the schedule of the latter.
 ///
-/// It draws in `PostUpdate`, after [`ClamberSystems::Anchor`], on the pose that this frame draws. Clusters and contacts
-/// are those that queries reached in the surface's current and previous pose. On a surface that stands still they
-/// accumulate until it moves.
+/// The plugin draws in `PostUpdate`, after [`ClamberSystems::Anchor`], on the pose that this frame draws. Clusters and
+/// contacts are those that queries reached in the surface's current and previous pose. On a surface that stands still
+/// they accumulate until it moves.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceGizmosPlugin {
     schedule: InternedScheduleLabel,

@@ -140,7 +140,7 @@ pub struct DebrisBodies {
 }
 
 impl DebrisBodies {
-    /// What the last tick did.
+    /// The report of the last tick.
     pub fn report(&self) -> &DebrisReport {
         &self.report
     }

@@ -23,7 +23,7 @@ use crate::{ClimberBlow, ClimberBody, ClimberInput, ClimberPlugin, WorldOrigin};
 /// Lets dynamic bodies of `bevy_rapier3d` collide with a climber: crates that fall on it rest on it or knock it down.
 /// Insert it beside the [`Climber`](crate::Climber). Needs a [`RapierProxyPlugin`].
 ///
-/// What strikes the climber becomes a blow ([`ClimberInput::strike`]) by the collider's entity. See
+/// A body that strikes the climber deals a blow ([`ClimberInput::strike`]) by the collider's entity. See
 /// [`clamber_world::ClimberProxy`] for how it works. The climber itself needs no collider.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
@@ -85,7 +85,7 @@ pub(crate) struct RapierProxies {
     colliders: HashSet<ColliderHandle>,
     /// The bodies before the step that is under way.
     before: BodyPoses,
-    /// Length of that step; `None` if there is none.
+    /// Length of that step; `None` if no step is under way.
     dt: Option<f64>,
 }
 
@@ -131,7 +131,7 @@ fn follow(
                 colliders,
                 &mut joints.impulse_joints,
                 &mut joints.multibody_joints,
-                // None is attached to a proxy.
+                // No soft body is attached to a proxy.
                 &mut SoftBodySet::default(),
                 true,
             );

@@ -34,7 +34,7 @@ pub(crate) fn tell_tick(
 ) {
     // The time from this tick to the end of the frame is right even if the fixed clock has discarded time.
     let now = frame.elapsed().saturating_sub(fixed.overstep());
-    // Both are seconds of a `Duration`, which are never refused.
+    // Both times are seconds of a `Duration`, which are never refused.
     clock.0.tick(now.as_secs_f64(), tick.delta_secs_f64()).ok();
 }
 
@@ -42,7 +42,7 @@ pub(crate) fn tell_tick(
 pub(crate) fn tell_frame(mut clock: ResMut<FrameClock>, frame: Res<Time<Virtual>>) {
     let now = frame.elapsed_secs_f64();
     if clock.0.record(now).is_err() {
-        // Somebody has set the clock back.
+        // The app has set the clock back.
         clock.0.restart(now).ok();
     }
 }

@@ -41,7 +41,7 @@ struct Spare {
     palette: Palette,
 }
 
-/// Frames in which a creature may jump without a word: those of its rest, and of the start of its animation.
+/// Number of first frames in which a creature may jump without a warning, since its animation starts in them.
 const FIRST_FRAMES: u8 = 8;
 
 impl DrawnSurface {

@@ -10,7 +10,7 @@ pub(crate) struct History {
     drawn: PoseHistory<Locals>,
     /// Counts poses.
     poses: u64,
-    /// The last pose while there is none.
+    /// Stands for the last pose while there is no pose.
     nothing: Locals,
 }
 

@@ -54,7 +54,7 @@ pub struct PosedSurface {
     palette: Palette,
     /// The surface has had a valid pose.
     is_placed: bool,
-    /// Nothing moved in the last tick.
+    /// The surface did not move in the last tick.
     still: bool,
     /// The last tick posed the surface anew; false if it had no need to.
     posed_anew: bool,
@@ -71,7 +71,7 @@ pub struct PosedSurface {
     /// In the last tick, and in the one before, nobody knew how a creature moved that had a pose before: it was placed,
     /// or its pose had not been drawn yet.
     has_jumped: [bool; 2],
-    /// Somebody may have changed the surface since the last tick.
+    /// The app may have changed the surface since the last tick.
     edited: bool,
     error: Option<PoseError>,
     scratch: Scratch,
@@ -364,7 +364,7 @@ fn swing(from: &Similarity, to: &Similarity, reach: f64) -> f64 {
     from.translation.distance(to.translation) + turned.sqrt() * reach
 }
 
-/// The transforms of a tick. True if they are those of `last`; `Ok(Err(_))` if the hierarchy has changed.
+/// The transforms of a tick. True if they are equal to `last`; `Ok(Err(_))` if the hierarchy has changed.
 fn read_tick(
     drawn: &DrawnSurface,
     timing: &SkinnedCollider,

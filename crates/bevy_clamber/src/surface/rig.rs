@@ -17,7 +17,7 @@ const MAX_DEPTH: usize = 4096;
 /// rotations in f32 are no more accurate.
 const SIMILAR: f64 = 1e-6;
 
-/// What poses are read from.
+/// The entities from which poses are read.
 #[derive(Clone, Copy)]
 pub(crate) struct Scene<'a, 'w, 's> {
     pub(crate) hierarchy: &'a Hierarchy<'w, 's>,
@@ -62,9 +62,9 @@ struct Node {
 /// Transforms at some time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Locals {
-    /// Of the joints and the entities between them.
+    /// Transforms of the joints and of the entities between them.
     nodes: Pose,
-    /// Of the entities above them.
+    /// Transforms of the entities above them.
     above: Pose,
     /// The [`WorldOrigin`](crate::WorldOrigin), which the topmost of these transforms is relative to.
     origin: DVec3,
@@ -115,7 +115,7 @@ impl Locals {
             .blend_in(&to.relative_to(from.origin).nodes, fraction)
     }
 
-    /// What is above the joints, between two poses.
+    /// The transform above the joints, between two poses.
     pub(crate) fn blend_root(
         &mut self,
         from: &Self,
@@ -172,7 +172,7 @@ impl Rig {
         Ok(())
     }
 
-    /// Reads all transforms. True if they are those of `last`.
+    /// Reads all transforms. True if they are equal to `last`.
     pub(crate) fn read(
         &self,
         scene: &Scene<'_, '_, '_>,
@@ -184,7 +184,7 @@ impl Rig {
         Ok(joints && root)
     }
 
-    /// Reads the joints and the entities between them. True if they are those of `last`.
+    /// Reads the joints and the entities between them. True if they are equal to `last`.
     pub(crate) fn read_joints(
         &self,
         scene: &Scene<'_, '_, '_>,
@@ -206,7 +206,7 @@ impl Rig {
         Ok(same && into.origin == last.origin)
     }
 
-    /// Reads the entities above the joints. True if they are those of `last`.
+    /// Reads the entities above the joints. True if they are equal to `last`.
     pub(crate) fn read_root(
         &self,
         scene: &Scene<'_, '_, '_>,
@@ -324,7 +324,7 @@ fn above_all(nodes: &[Node], node_of_joint: &[u32]) -> usize {
     fork.map_or(joint, |fork| joint.min(fork + 1))
 }
 
-/// Reads the transforms of entities that have these parents. True if they are those of `last`.
+/// Reads the transforms of entities that have these parents. True if they are equal to `last`.
 fn read_all(
     entities: impl ExactSizeIterator<Item = (Entity, Option<Entity>)>,
     hierarchy: &Hierarchy<'_, '_>,

@@ -309,7 +309,7 @@ fn check_sweep(
     radius: f64,
     distance_at: impl Fn(f64) -> f64,
 ) {
-    let end = hit.map_or(1.0, |hit| f64::from(hit.time));
+    let end = hit.map_or(1.0, |hit| f64::from(hit.fraction));
     for sample in 0..20 {
         // There is no contact before the reported time.
         let time = end * f64::from(sample) / 20.0;
@@ -410,7 +410,7 @@ fn casts_and_sweeps_agree_with_brute_force() {
             .flatten()
             .filter(|hit| hit.hit.distance > 0.01)
         {
-            let center = sphere(hit.time.into()).as_vec3();
+            let center = sphere(hit.fraction.into()).as_vec3();
             let aside = (center - hit.hit.point).normalize();
             let off = (aside - hit.separation_normal).length();
             assert!(off < 2e-3, "{case}: {aside} {hit:?}");

@@ -367,7 +367,7 @@ impl Schedule<'_, '_> {
         }
         let is_hand = Extremity::ALL[index].is_hand();
         if is_hand && self.goals[1 - index].is_none() {
-            // The other hand is busy with an act.
+            // The other hand is busy with an overlay clip.
             return false;
         }
         let mut off = (0..4).filter(|&other| {

@@ -109,8 +109,9 @@ impl Body {
         &self.plants
     }
 
-    /// Markers and ends that clips passed in the last update, such as the marker `loose` of an act that looses an
-    /// arrow. The act is the last layer; names and markers of the clips are in [`Figure::animations`].
+    /// Markers and ends that clips passed in the last update, such as the marker `loose` of an overlay clip that
+    /// looses an arrow. The overlay clip is the last layer; names and markers of the clips are in
+    /// [`Figure::animations`].
     pub fn events(&self) -> &[AnimationEvent] {
         self.player.events()
     }

@@ -15,7 +15,7 @@ const FADE_TIME: f64 = 0.22;
 /// Name of the marker at which a jump leaves the ground.
 const TAKE_OFF: &str = "take_off";
 
-/// The layers below an act.
+/// The layers below an overlay clip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Base {
     /// Standing and locomotion, mixed.

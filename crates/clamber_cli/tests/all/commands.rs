@@ -57,8 +57,8 @@ fn clamber(arguments: &[&str]) -> Output {
     command.args(arguments).output().unwrap()
 }
 
-/// What `clamber` says with these arguments. It has to end with `code`. Its errors are told for the code 2, and its
-/// output otherwise.
+/// Runs `clamber` with arguments, and checks that it exits with `code`. Returns what it wrote to standard error if
+/// `code` is 2, which stands for an error, and what it wrote to standard output otherwise.
 fn said(arguments: &[&str], code: i32) -> String {
     let ended = clamber(arguments);
     let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
@@ -69,7 +69,7 @@ fn said(arguments: &[&str], code: i32) -> String {
 }
 
 /// Compares a recording with others. Each row is one comparison: the path of the other recording, the exit code, and a
-/// part of the output.
+/// part of the text that [`said`] returns.
 fn compares(first: &str, rows: &[(String, i32, &str)]) {
     for (other, code, told) in rows {
         let text = said(&["compare", first, other], *code);

@@ -163,7 +163,7 @@ pub struct Walk {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Turn {
-    /// What the creature turns to face. It follows a place that moves, such as prey.
+    /// The place that the creature turns to face. It follows a place that moves, such as prey.
     pub to: Place,
     /// The turn is done when the place is within this angle of straight ahead, degrees.
     pub within_deg: f64,

@@ -48,8 +48,12 @@ pub struct BodyFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub made_for: Option<f64>,
     /// Strength of the jolt, up and down at the creature's hips, when a clip passes its marker `impact`: nominally the
-    /// largest acceleration of the swing that follows, metres a second squared. From 0 to 20, 2.5 by default. A
-    /// footfall gives 15 % of it; jolts at the same time add up.
+    /// largest acceleration of the swing that follows, metres a second squared, at any size. From 0 to 20, 2.5 by
+    /// default. A footfall gives 15 % of it; jolts at the same time add up.
+    ///
+    /// The jolt itself grows with the creature. It changes the velocity of the hips at once, by
+    /// `tremor * length.sqrt() / 50.0` metres a second, where `length` is the length of the longest leg in metres. The
+    /// period of the swing grows with the square root of the leg's length as well, and its width with the length.
     #[serde(default = "tremor")]
     pub tremor: f64,
 }

@@ -80,7 +80,8 @@ impl Sense {
     /// Number of senses.
     pub(crate) const COUNT: usize = NAMES.len();
 
-    /// All senses of the creature as a whole, in the order of the variants, without those of regions and of the game.
+    /// All senses of the creature as a whole, in the order of the variants, without the senses of regions and of the
+    /// game.
     pub fn all() -> impl ExactSizeIterator<Item = Self> {
         NAMES.iter().map(|(sense, _)| *sense)
     }
@@ -103,7 +104,7 @@ impl fmt::Display for Sense {
     }
 }
 
-/// What a creature senses in one region of its body. [`Senses::in_region`](crate::Senses::in_region) reads it.
+/// A sense of a creature for one region of its body. [`Senses::in_region`](crate::Senses::in_region) reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum RegionSense {

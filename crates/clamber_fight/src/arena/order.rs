@@ -76,7 +76,7 @@ pub enum Order {
     Strike {
         /// The fighter.
         fighter: FighterId,
-        /// What the blow does to it.
+        /// The blow's effect on it.
         knockback: Knockback,
     },
     /// Moves a fighter to a place, at rest in the air. It keeps its hit points, and its act ends. If the place is

@@ -38,7 +38,7 @@ pub struct SavedCreature {
     pub kind: KindId,
     /// The creature's place at first, and its size.
     pub config: CreatureConfig,
-    /// Its changing state.
+    /// The creature's changing state.
     pub state: CreatureState,
 }
 
@@ -49,7 +49,7 @@ pub struct SavedFighter {
     pub id: FighterId,
     /// The fighter's body and weapons.
     pub config: FighterConfig,
-    /// Its changing state.
+    /// The fighter's changing state.
     pub state: FighterState,
 }
 

@@ -64,8 +64,8 @@ impl Arena {
     /// [`fighter_obstacle`], and deals the blows itself. [`Order::Strike`] is a blow by the game.
     ///
     /// # Errors
-    /// Those of [`Arena::step`]. [`ArenaError::Order`] for an order that cannot be followed and [`ArenaError::Climber`]
-    /// for rules that [`StepRules::check`] refuses: nothing is changed then.
+    /// The errors of [`Arena::step`]. [`ArenaError::Order`] for an order that cannot be followed and
+    /// [`ArenaError::Climber`] for rules that [`StepRules::check`] refuses: nothing is changed then.
     pub fn step_with(
         &mut self,
         inputs: &[ClimberInput],

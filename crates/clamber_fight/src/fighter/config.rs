@@ -87,7 +87,7 @@ pub struct BowConfig {
     /// Damage of an arrow at full speed; 0.05 by default. It is proportional to the arrow's energy.
     pub damage: f64,
     /// Largest angle by which an arrow strays, radians for each metre a second at which the archer moves relative to
-    /// what carries it; 0.004 by default. An arrow never strays by more than 0.5 radians.
+    /// its support; 0.004 by default. An arrow never strays by more than 0.5 radians.
     pub stray: f64,
     /// Number of arrows at first, and again after each respawn; `None`, the default, for unlimited arrows.
     pub arrows: Option<u32>,

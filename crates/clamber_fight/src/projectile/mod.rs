@@ -68,9 +68,9 @@ pub enum ProjectileKind {
 pub enum ProjectileMotion {
     /// The projectile flies.
     Flying {
-        /// Its tip, in world space.
+        /// The projectile's tip, in world space.
         position: DVec3,
-        /// Its velocity, metres a second.
+        /// The projectile's velocity, metres a second.
         velocity: DVec3,
     },
     /// The arrow sticks.
@@ -84,9 +84,9 @@ pub enum ProjectileMotion {
     },
     /// An arrow that came loose falls, and does no damage: its material is gone, or too many arrows stick.
     Falling {
-        /// Its tip, in world space.
+        /// The projectile's tip, in world space.
         position: DVec3,
-        /// Its velocity, metres a second.
+        /// The projectile's velocity, metres a second.
         velocity: DVec3,
         /// Direction in which it points; a unit vector.
         direction: DVec3,

@@ -77,8 +77,8 @@ fn with_tag_tags_every_surface() {
 #[test]
 fn marks_of_ledges_are_ignored_with_a_warning() {
     let mut file = three();
-    for material in [0, 1] {
-        file.json["materials"][material]["extras"]["clamber"]["ledge"] = json!(1);
+    for (material, value) in [(0, json!(1)), (1, json!(false))] {
+        file.json["materials"][material]["extras"]["clamber"]["ledge"] = value;
     }
     let model = file.load_with(&LoadOptions::default()).unwrap();
     assert_eq!(tags(&model), tags(&load(&LoadOptions::default())));

@@ -26,7 +26,7 @@ pub struct MeshSource<'a> {
     /// The three corners of each triangle, as indices into `positions`; counter-clockwise seen from outside.
     pub triangles: &'a [[u32; 3]],
     /// Influences of all vertices, one vertex after the other. A vertex can have any number of them. A single influence
-    /// without `influence_ends` is that of every vertex.
+    /// without `influence_ends` applies to every vertex.
     pub influences: &'a [Influence],
     /// For each vertex, the index in `influences` after its last one. Empty if all vertices have the same number of
     /// influences; pad them with zero weights.

@@ -17,7 +17,7 @@ const JUMP: f64 = 1.0 / 100.0;
 /// one interval. Otherwise it is a little longer than the second longest of the last 32 intervals, since the longest
 /// one may be a single pose that came late. The lag changes by at most 1/200 of a tick in each tick, unless it is more
 /// than twice as long as it should be. If a tick would see a later time than the newest pose has, it sees the newest
-/// pose, and is [`PoseMotion::Teleported`]. The first tick that is on time again is placed as well.
+/// pose, and is [`PoseMotion::Teleported`]. The first tick that is on time again is `Teleported` as well.
 ///
 /// For poses of joints, [`PoseTrack`](super::PoseTrack) does all of this. A clock alone is for engines that have their
 /// own poses, together with a [`PoseHistory`](super::PoseHistory). Times are in seconds, from any zero.

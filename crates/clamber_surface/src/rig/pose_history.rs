@@ -40,7 +40,7 @@ struct Sample<P> {
 pub struct Between {
     /// Share of the way from the first pose to the second, 0 to 1.
     pub fraction: f64,
-    /// [`PoseMotion::Teleported`] if the creature was placed since the last time that was asked for.
+    /// [`PoseMotion::Teleported`] if the creature was teleported since the last time that was asked for.
     pub motion: PoseMotion,
 }
 
@@ -53,8 +53,8 @@ impl<P> PoseHistory<P> {
         }
     }
 
-    /// Adds a pose, and the creature's motion from the last pose to it. If the creature was placed, the two poses are
-    /// not blended. A pose of the same time as the last one replaces it.
+    /// Adds a pose, and the creature's motion from the last pose to it. If the creature was teleported, the two poses
+    /// are not blended. A pose of the same time as the last one replaces it.
     ///
     /// # Errors
     /// [`RigError::NotFinite`] for a time that is infinite or NaN, [`RigError::TimeGoesBack`] for one before the last

@@ -12,7 +12,7 @@ pub enum PoseMotion {
 }
 
 impl PoseMotion {
-    /// Two motions, one after the other: placed if either is.
+    /// Two motions, one after the other: `Teleported` if either is.
     pub(super) fn and(self, other: Self) -> Self {
         if other == Self::Teleported {
             other

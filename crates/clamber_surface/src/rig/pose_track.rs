@@ -7,7 +7,8 @@ use crate::geometry::{Similarity, slerp};
 /// A surface that gets a new pose only in every third tick stands still in two ticks, and moves at three times its
 /// speed in the next. Riders feel that, and are shaken off. A track blends the last two poses instead, so that the skin
 /// moves evenly: one interval between poses late, by the rules of [`PoseClock`]. Poses may come in any rhythm, late, or
-/// be missed. A skin without a new pose stands still, and is then placed where it should be, so no rider is shaken off.
+/// be missed. A skin without a new pose stands still, and is then teleported to where it should be, so no rider is
+/// shaken off.
 ///
 /// Local transforms are blended as by [`Pose::blend`]: a limb keeps its length, and no joint may turn by half a turn or
 /// more between two poses. A local translation, scale or angle that accelerates by `a` is off by at most `a h²/8` at
@@ -121,7 +122,7 @@ impl PoseTrack {
     }
 
     /// Makes a tick of `dt` seconds that ends at `now`: computes [`PoseTrack::pose`] and
-    /// [`PoseTrack::world_from_model`]. Returns whether the surface is to be advanced or placed there.
+    /// [`PoseTrack::world_from_model`]. Returns whether the surface is to be advanced or teleported there.
     ///
     /// # Errors
     /// [`RigError::NoPose`] before the first pose. [`RigError::NotFinite`] if a number is not finite,

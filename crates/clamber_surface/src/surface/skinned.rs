@@ -137,8 +137,8 @@ impl SkinnedSurface {
         self.placed
     }
 
-    /// Puts the surface to sleep: it stands still in its current pose, without motion, until it is placed or advanced
-    /// again.
+    /// Puts the surface to sleep: it stands still in its current pose, without motion, until it is teleported or
+    /// advanced again.
     ///
     /// For a creature that is neither touched nor drawn: its clips, its palette and [`SkinnedSurface::advance`] can be
     /// skipped. Queries still work. Costs O(joints), once.

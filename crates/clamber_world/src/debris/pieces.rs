@@ -29,9 +29,9 @@ use crate::ObstacleId;
 /// of the skin closes, such as between head and shoulder.
 ///
 /// Skin may also appear around a body: a stone breaks off below the skin, or a creature is new, is
-/// [placed](SkinnedSurface::teleport), is [edited](SkinnedSurface::edit) or shows a part again where bodies are. A body
-/// that is no deeper below the skin than the radius of the largest ball in it is moved out of the creature within a
-/// split second, by the shortest way ([`Debris::is_put_out`]). Skin passes through a deeper body, and through a body
+/// [teleported](SkinnedSurface::teleport), is [edited](SkinnedSurface::edit) or shows a part again where bodies are. A
+/// body that is no deeper below the skin than the radius of the largest ball in it is moved out of the creature within
+/// a split second, by the shortest way ([`Debris::is_put_out`]). Skin passes through a deeper body, and through a body
 /// whose way out is blocked ([`Debris::is_let_through`]): such a body falls through the creature, or lies on the ground
 /// until the creature moves on. [`DebrisReport::enclosed`](crate::DebrisReport::enclosed) counts such bodies when they
 /// are found. A game that wants another result moves the body itself, before the next tick, or removes it. Open skin

@@ -52,7 +52,8 @@ struct Outcome {
 }
 
 impl Outcome {
-    /// Runs a tick that starts at `time`, and adds its duration to the list.
+    /// Runs a tick that starts at `time`, and adds its duration to the list. The duration does not include
+    /// [`Body::end`], which prepares the next tick.
     fn tick(
         &mut self,
         body: &mut Body,

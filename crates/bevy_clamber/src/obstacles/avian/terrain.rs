@@ -23,12 +23,12 @@ const LOOSE: f32 = 1e-4;
 
 /// An avian world as one obstacle: all its colliders except sensors, as of the last step.
 ///
-/// It only borrows: make it anew each tick. Height fields and triangle meshes are tested per triangle, from both sides.
-/// Convex shapes are solid. `RapierTerrain` gives the same answers for the same shapes. Rays are cast by parry: a ray
-/// that hits exactly an edge between two triangles may pass through.
+/// The terrain only borrows: make it anew each tick. Height fields and triangle meshes are tested per triangle, from
+/// both sides. Convex shapes are solid. `RapierTerrain` gives the same answers for the same shapes. Rays are cast by
+/// parry: a ray that hits exactly an edge between two triangles may pass through.
 ///
-/// Colliders that stand still are found through avian's trees. Those that can move are found through a tree of their
-/// own, over their bounds in the last tick.
+/// Colliders that stand still are found through avian's trees. Colliders that can move are found through a tree of
+/// their own, over their bounds in the last tick.
 pub struct AvianTerrain<'a> {
     world: &'a AvianObstacles<'a, 'a>,
     filter: SpatialQueryFilter,

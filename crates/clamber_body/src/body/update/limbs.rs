@@ -84,7 +84,7 @@ impl Update<'_> {
         })
     }
 
-    /// The goals of hands and feet. For an act, a hand leaves its hold only when the other hand holds.
+    /// The goals of hands and feet. For an overlay clip, a hand leaves its hold only when the other hand holds.
     pub(super) fn goals(
         &self,
         context: &Context<'_>,

@@ -61,7 +61,7 @@ pub(super) fn follow(
 ) {
     let proxies = &mut all.proxies;
     proxies.retain(|climber, _| climbers.contains(*climber));
-    // Those of climbers that are gone, and those of a saved world.
+    // Removes the bodies of climbers that are gone, and the bodies of a saved world.
     for (stand_in, ..) in &stand_ins {
         if proxies.values().all(|proxy| proxy.body != stand_in) {
             commands.entity(stand_in).despawn();

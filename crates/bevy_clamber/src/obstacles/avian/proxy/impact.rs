@@ -4,16 +4,16 @@ use bevy_math::Vec3;
 use clamber_world::{ProxyImpact, RigidPose};
 use glam::DVec3;
 
-/// What is recorded of a body before its velocity is solved.
+/// A body's state before its velocity is solved.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Recorded {
     pub(super) body: Entity,
     pub(super) pose: RigidPose,
     pub(super) linear: Vec3,
     pub(super) angular: Vec3,
-    /// What gravity and forces add to its velocity in the step.
+    /// The velocity that gravity and forces add to it in the step.
     pub(super) gained: Vec3,
-    /// Its center of mass, in avian's space.
+    /// The body's center of mass, in avian's space.
     pub(super) center: DVec3,
 }
 
@@ -32,7 +32,8 @@ impl Recorded {
 /// The contacts of one body with a climber.
 pub(super) type Impact = ProxyImpact<Entity, Entity>;
 
-/// The contacts of a pair of which one collider stands for a climber; `None` if they do not touch. In avian's space.
+/// The contacts of a pair of colliders, one of which stands for a climber; `None` if they do not touch. In avian's
+/// space.
 pub(super) fn impact_of(pair: &ContactPair, stand_in: Entity) -> Option<Impact> {
     let (body, collider) = other(pair, stand_in)?;
     let is_first = pair.collider1 == stand_in;

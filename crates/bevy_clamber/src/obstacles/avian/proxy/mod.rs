@@ -24,7 +24,7 @@ use impact::{Impact, Recorded};
 /// Lets dynamic bodies of avian collide with a climber: crates that fall on it rest on it or knock it down. Insert it
 /// beside the [`Climber`](crate::Climber). Needs an [`AvianProxyPlugin`].
 ///
-/// The climber gets a kinematic body on an entity of its own. What strikes it becomes a blow
+/// The climber gets a kinematic body on an entity of its own. A body that strikes it deals a blow
 /// ([`ClimberInput::strike`](crate::ClimberInput::strike)) by the collider's entity, with the impulse that the
 /// climber's mass takes ([`ProxyBody::share`]). The climber itself needs no collider.
 ///
@@ -102,7 +102,7 @@ struct Proxy {
     body: Entity,
     /// The climber as it was followed last.
     shown: ProxyBody,
-    /// Bodies with which it does not collide: what carries the climber, and what the climber pushes by itself.
+    /// Bodies with which it does not collide: the climber's support, and bodies that the climber pushes by itself.
     apart: Vec<Entity>,
 }
 
