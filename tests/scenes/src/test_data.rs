@@ -68,6 +68,13 @@ pub fn files_in(folder: &Path, extensions: &[&str]) -> std::io::Result<Vec<PathB
     Ok(files)
 }
 
+/// The models of a folder, but not of the folders in it, sorted.
+pub fn models_in(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let mut files = files_in(folder, &GLTF)?;
+    files.retain(|file| file.parent() == Some(folder));
+    Ok(files)
+}
+
 /// The given files, or, if none are given, all files of `models/` in the folder that `CLAMBER_TEST_DATA` names, sorted.
 ///
 /// # Errors
@@ -80,8 +87,7 @@ pub fn models_or(given: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
         .ok_or_else(|| format!("no models: pass files, or set {VARIABLE} to a folder"))?;
     let folder = PathBuf::from(root).join("models");
     let failed = |error: std::io::Error| format!("no models: {}: {error}", folder.display());
-    let mut files = files_in(&folder, &GLTF).map_err(failed)?;
-    files.retain(|file| file.parent() == Some(folder.as_path()));
+    let files = models_in(&folder).map_err(failed)?;
     if files.is_empty() {
         let folder = folder.display();
         return Err(format!("no models: no .glb or .gltf file in {folder}"));

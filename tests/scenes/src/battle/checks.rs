@@ -340,7 +340,11 @@ impl Watch {
     /// Keeps the largest number of a check, and describes the first one beyond its bound.
     fn measure(&mut self, check: &'static str, number: f64, at: At<'_>, what: &str) {
         // `f64::max` and the comparison ignore NaN.
-        let number = if number.is_nan() { f64::INFINITY } else { number };
+        let number = if number.is_nan() {
+            f64::INFINITY
+        } else {
+            number
+        };
         let (largest, cause) = self.found.entry(check).or_default();
         *largest = largest.max(number);
         if number > bound(check) {
