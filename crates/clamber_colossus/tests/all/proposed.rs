@@ -1,7 +1,7 @@
 //! Brains that are proposed for third-party creatures.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use crate::animals::animals;
@@ -296,7 +296,7 @@ fn creatures_from_elsewhere_live_for_ten_minutes() {
 /// The proposed legs have the same feet and toes as the legs that were chosen by hand for these files.
 #[test]
 fn legs_are_those_that_people_find() {
-    let Some(models) = test_models("legs") else {
+    let Some(folder) = test_models("legs") else {
         return;
     };
     for animal in animals() {
@@ -304,7 +304,7 @@ fn legs_are_those_that_people_find() {
         if animal.file == "gltf_spider_animated.gltf" {
             continue;
         }
-        let path = models.join(animal.file);
+        let path = folder.join(animal.file);
         let file = BrainFile::propose(&rig(&path).unwrap(), 20.0).unwrap();
         let found: BTreeMap<String, Option<String>> = file
             .body
