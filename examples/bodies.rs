@@ -16,6 +16,7 @@ use clamber::gltf::Model;
 use clamber::render::{
     Camera, Drawn, Frame, Gpu, Image, Light, Overlay, RenderMeshId, Renderer, TextSize,
 };
+use clamber_scenes::battle::within;
 use clamber_scenes::bodies::{self, Mount, Scene, Stage};
 use clamber_scenes::measure::exit_code;
 use clamber_scenes::{giant, picture};
@@ -35,9 +36,11 @@ struct Options {
     out: PathBuf,
     /// Number of columns of pictures on a sheet.
     #[arg(long, default_value_t = 8)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=100))]
     columns: u32,
-    /// Shows this part of a scene, seconds.
-    #[arg(long, num_args = 2)]
+    /// Shows this part of a scene, from one second to a later one.
+    #[arg(long, num_args = 2, value_names = ["FROM", "TO"])]
+    #[arg(value_parser = |text: &str| within(text, 0.0, 3600.0), allow_negative_numbers = true)]
     between: Option<Vec<f64>>,
 }
 
@@ -118,6 +121,10 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    let between = options.between.as_deref();
+    if between.is_some_and(|part| part[0] >= part[1]) {
+        return Err("--between ends before it begins".into());
+    }
     let (figure, rig) = figure(options.figure.as_deref())?;
     std::fs::create_dir_all(&options.out)?;
     for (index, scene) in scenes()?.iter().enumerate() {

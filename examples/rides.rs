@@ -17,7 +17,7 @@ use clap::Parser;
 /// A climber rides every model of a folder for a minute, and a table shows which checks hold.
 ///
 /// Below the table, each failed check is listed with the place and time of its first failure. Exits with 1 if a model
-/// that can be loaded fails a check, or if none can be loaded.
+/// that can be loaded fails a check, or if none can be loaded, and with 2 after an error.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "rides", version)]
 struct Options {

@@ -1,13 +1,13 @@
 use std::path::PathBuf;
 
-use clamber_scenes::battle::BattleOptions;
+use clamber_scenes::battle::{BattleOptions, within};
 use clap::{ArgGroup, CommandFactory, Parser, error::ErrorKind};
 
 /// A climber fights a giant that hunts it, or rides a creature that walks and shakes, while rocks fall.
 ///
 /// Checks in every tick that the climber is carried exactly and stays above the ground, and several times a second that
 /// neither the climber nor a rock is inside the creature. Prints a table with the first fault of each failed check, and
-/// exits with 1 if a check failed.
+/// exits with 1 if a check failed, and with 2 after an error.
 #[derive(Debug, Parser)]
 #[command(name = "battle", version)]
 pub(crate) struct Options {
@@ -24,7 +24,7 @@ pub(crate) struct Options {
 
     /// Fights this number of battles, with this seed and the next ones, each until the creature is dead. Prints a line
     /// for each, and writes no files.
-    #[arg(long, value_name = "COUNT", conflicts_with_all = ["pictures", "record"])]
+    #[arg(long, value_name = "COUNT", conflicts_with_all = ["pictures", "record", "out"])]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=10_000))]
     pub(crate) fights: Option<u64>,
 
@@ -118,13 +118,5 @@ impl Options {
 impl FilmOptions {
     pub(crate) fn is_wanted(&self) -> bool {
         self.frames.is_some() || self.gif.is_some()
-    }
-}
-
-fn within(text: &str, least: f64, most: f64) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if (least..=most).contains(&number) => Ok(number),
-        Ok(_) => Err(format!("must be from {least} to {most}")),
-        Err(error) => Err(error.to_string()),
     }
 }

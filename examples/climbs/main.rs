@@ -22,7 +22,8 @@ const ENOUGH: f64 = 0.74;
 /// A bot climbs every model of a folder, from the ground to the highest place that the model's graph calls reachable
 /// with the strength that the bot counts on, and a table shows how long it takes.
 ///
-/// All skin can be gripped, as if it were fur. Exits with 1 if the bot does not come there on 20 of 27 models.
+/// All skin can be gripped, as if it were fur. Exits with 1 if the bot does not come there on 20 of 27 models, and with
+/// 2 after an error.
 #[derive(Parser)]
 #[command(name = "climbs", version)]
 struct Options {

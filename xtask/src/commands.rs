@@ -23,7 +23,7 @@ use crate::call::{Call, Part, ask, parts};
 use crate::pages::{LIST, read_all, reasons};
 use crate::plan::Plan;
 use crate::workspace::{files, folder, no_faults, read};
-use crate::{Arguments, Task, examples};
+use crate::{Arguments, Only, Task, examples};
 
 /// Folders at the root of the repository. A word that begins with one of them is a path that must exist.
 const FOLDERS: &str = ".ci/ assets/ benches/ crates/ examples/ peers/ tests/";
@@ -174,12 +174,11 @@ impl Plan {
     /// task's name.
     fn task(&self, words: &[&str]) -> Result<Option<String>, String> {
         let parsed = Arguments::try_parse_from(words).map_err(|error| error.to_string())?;
-        let (task, only) = match parsed.task {
-            Task::Ci { only } => ("ci", only),
-            Task::Nightly { only } => ("nightly", only),
+        let (task, Only { only }) = match parsed.task {
+            Task::Ci(only) => ("ci", only),
+            Task::Nightly(only) => ("nightly", only),
             _ => return Ok(self.named(words[1])),
         };
-        let only = only.unwrap_or_default();
         let mut names = self.steps.iter().filter(|name| name.starts_with(task));
         match names.any(|name| name.contains(&only)) {
             true if only.is_empty() => Ok(Some(format!("{task}: all"))),

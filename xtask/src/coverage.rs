@@ -25,23 +25,16 @@ pub(crate) fn check(main: &Metadata) -> Result<(), String> {
     let recipes = read(&plan.root.join(RECIPES))?;
     let mut found = gaps(&plan);
     let compiles = Part::new("bevy_clamber", "test", "readme");
-    if !plan
-        .calls
-        .iter()
-        .any(|(_, call)| call.parts.contains(&compiles))
-    {
+    if !plan.runs(&compiles) {
         found.push(format!("no step compiles the programs of {COMPILED}"));
     }
     for file in files(&plan.root)? {
         if matches!(file.extension(), Some("rs" | "md")) {
             let text = read(&plan.root.join(&file))?;
             found.extend(gaps_in(&plan, &file, &text));
-            let page = file
-                .strip_prefix("docs/recipes")
-                .ok()
-                .map(|page| page.file_stem());
+            let page = file.strip_prefix("docs/recipes").ok();
             let is_module = |page: &str| recipes.split_whitespace().any(|word| word == page);
-            if let Some(Some(page)) = page
+            if let Some(page) = page.and_then(Utf8Path::file_stem)
                 && text.contains("```rust")
                 && !is_module(page)
             {
@@ -55,8 +48,7 @@ pub(crate) fn check(main: &Metadata) -> Result<(), String> {
 /// The targets that no step runs, in sentences.
 fn gaps(plan: &Plan) -> Vec<String> {
     let all = plan.packages.iter().flat_map(parts);
-    let missing =
-        all.filter(|(part, _)| !plan.calls.iter().any(|(_, call)| call.parts.contains(part)));
+    let missing = all.filter(|(part, _)| !plan.runs(part));
     let gaps = missing.map(|(part, target)| {
         let needed = target.required_features.join(", ");
         format!("no step runs {part} with the features that it needs: [{needed}]")

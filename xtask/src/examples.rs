@@ -28,11 +28,9 @@ pub(crate) type Examples = BTreeMap<String, String>;
 
 /// The lines of an example, without its name.
 fn lines(name: &str) -> Vec<&'static str> {
-    let lines = LINES.lines().filter_map(|line| line.split_once(' '));
-    lines
-        .filter(|(known, _)| *known == name)
-        .map(|(_, rest)| rest)
-        .collect()
+    let name = format!("{name} ");
+    let lines = LINES.lines().filter_map(|line| line.strip_prefix(&name));
+    lines.collect()
 }
 
 /// The options that an example gets in the step `examples`.

@@ -21,7 +21,7 @@ mod workspace;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
 
 /// Tasks of this workspace.
 #[derive(Parser)]
@@ -35,19 +35,11 @@ struct Arguments {
 enum Task {
     /// Runs all checks of CI. Goes on after a failure and lists all failures at the end. Takes half an hour on a cold
     /// target.
-    Ci {
-        /// Run only the steps whose name contains this.
-        #[arg(long, value_name = "NAME")]
-        only: Option<String>,
-    },
+    Ci(Only),
     /// Runs the checks that take too long for CI: every case of tests that have short forms, golden runs in other
     /// builds, other libraries, the app on all of Bevy, a soak of half an hour and an hour of the giant's life. Takes
     /// some three hours on a cold target. Adds a line for each step to nightly.md in the target folder.
-    Nightly {
-        /// Run only the steps whose name contains this.
-        #[arg(long, value_name = "NAME")]
-        only: Option<String>,
-    },
+    Nightly(Only),
     /// Stores the list of each crate's public items. `ci` compares the items that it finds with it.
     Face,
     /// Prints all commands in the documentation, with the step that runs each, or the reason why none does.
@@ -70,6 +62,14 @@ enum Task {
     },
 }
 
+#[derive(Args)]
+struct Only {
+    /// Run only the steps whose name contains this.
+    #[arg(long, value_name = "NAME")]
+    #[arg(default_value = "", hide_default_value = true)]
+    only: String,
+}
+
 fn main() -> ExitCode {
     if let Some(ended) = face::as_rustdoc() {
         return ended;
@@ -89,8 +89,8 @@ fn run(task: Task) -> Result<(), String> {
     let root = &metadata.workspace_root;
     std::env::set_current_dir(root).map_err(|error| format!("{root}: {error}"))?;
     match task {
-        Task::Ci { only } => steps::run(&metadata, "ci", &only.unwrap_or_default()),
-        Task::Nightly { only } => steps::run(&metadata, "nightly", &only.unwrap_or_default()),
+        Task::Ci(Only { only }) => steps::run(&metadata, "ci", &only),
+        Task::Nightly(Only { only }) => steps::run(&metadata, "nightly", &only),
         Task::Face => face::store(&metadata),
         Task::Commands => commands::print(&metadata),
         Task::Soak {

@@ -3,7 +3,7 @@
 use cargo_metadata::camino::Utf8PathBuf;
 use cargo_metadata::{Metadata, Package};
 
-use crate::call::{Call, ask};
+use crate::call::{Call, Part, ask};
 use crate::process::split;
 use crate::steps::{Check, Step};
 use crate::workspace::all;
@@ -101,6 +101,11 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
+    /// True if a step runs a part.
+    pub(crate) fn runs(&self, part: &Part) -> bool {
+        self.calls.iter().any(|(_, call)| call.parts.contains(part))
+    }
+
     /// Asks cargo about the calls of all steps.
     pub(crate) fn read(main: &Metadata) -> Result<Self, String> {
         let (root, workspaces, steps) = (main.workspace_root.clone(), all(main)?, steps(main)?);

@@ -2,14 +2,13 @@
 //! the summary lists failures and skipped tests.
 
 use std::io::Write;
-use std::process::Command;
 use std::sync::PoisonError;
 use std::time::Instant;
 
 use cargo_metadata::Metadata;
 
 use crate::plan::steps;
-use crate::process::{SKIPPED, cargo};
+use crate::process::{self, SKIPPED, cargo};
 
 /// File of the table with the results of nightly steps, in cargo's target folder.
 const RESULTS: &str = "nightly.md";
@@ -101,18 +100,10 @@ fn record(metadata: &Metadata, name: &str, seconds: f64, passed: bool) -> Result
 
 /// The current commit, and whether files differ from it.
 fn commit() -> String {
-    let git = |arguments: &[&str]| {
-        let output = Command::new("git").args(arguments).output().ok()?;
-        let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
-        output.status.success().then_some(text)
-    };
-    let changed = git(&["status", "--porcelain", "--untracked-files=no"]);
-    match (
-        git(&["rev-parse", "--short=12", "HEAD"]),
-        changed.as_deref(),
-    ) {
-        (None, _) => "unknown".into(),
-        (Some(commit), Some("")) => commit,
-        (Some(commit), _) => format!("{commit}, changed"),
-    }
+    // Without tags, `describe` gives the hash alone.
+    let line = "describe --always --exclude=* --abbrev=12 --dirty";
+    let found = process::run("git", line);
+    found.map_or("unknown".into(), |commit| {
+        commit.trim().replace("-dirty", ", changed")
+    })
 }

@@ -87,11 +87,9 @@ impl Creature {
 
     /// Where it stands at rest when it is so many metres tall, and the height of the ground there, metres.
     pub fn standing(&self, height: f64) -> Result<(Similarity, f64), SceneError> {
-        let rest = self.at_rest()?;
-        let low = rest.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
-        let high = rest.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
-        let scale = height / f64::from(high - low);
-        Ok((Similarity::from_scale(scale), f64::from(low) * scale))
+        let (low, high) = self.bounds(&self.rig.skeleton.rest_pose())?;
+        let scale = height / f64::from(high.y - low.y);
+        Ok((Similarity::from_scale(scale), f64::from(low.y) * scale))
     }
 
     /// The palette at rest.

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use crate::{Creature, SceneError};
 
 /// The environment variable that names the folder.
-pub const VARIABLE: &str = "CLAMBER_TEST_DATA";
+const VARIABLE: &str = "CLAMBER_TEST_DATA";
 
-/// The path of a file of the test data. If [`VARIABLE`] is not set, prints to standard error that `test` was
+/// The path of a file of the test data. If `CLAMBER_TEST_DATA` is not set, prints to standard error that `test` was
 /// skipped, and returns `None`.
 ///
 /// # Panics
@@ -31,7 +31,7 @@ pub fn file(test: &str, name: &str) -> Option<PathBuf> {
 }
 
 /// All glTF files of the test data, models and fixtures, sorted: path within the folder, and full path. If
-/// [`VARIABLE`] is not set, prints that `test` was skipped, and returns none.
+/// `CLAMBER_TEST_DATA` is not set, prints that `test` was skipped, and returns none.
 ///
 /// # Panics
 /// As [`file()`].
@@ -68,7 +68,14 @@ pub fn files_in(folder: &Path, extensions: &[&str]) -> std::io::Result<Vec<PathB
     Ok(files)
 }
 
-/// The given files, or, if none are given, all files of `models/` in the folder that [`VARIABLE`] names, sorted.
+/// The models of a folder, but not of the folders in it, sorted.
+pub fn models_in(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let mut files = files_in(folder, &GLTF)?;
+    files.retain(|file| file.parent() == Some(folder));
+    Ok(files)
+}
+
+/// The given files, or, if none are given, all files of `models/` in the folder that `CLAMBER_TEST_DATA` names, sorted.
 ///
 /// # Errors
 /// A message if no files are given, and the folder is not set, cannot be read, or has no model.
@@ -80,8 +87,7 @@ pub fn models_or(given: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
         .ok_or_else(|| format!("no models: pass files, or set {VARIABLE} to a folder"))?;
     let folder = PathBuf::from(root).join("models");
     let failed = |error: std::io::Error| format!("no models: {}: {error}", folder.display());
-    let mut files = files_in(&folder, &GLTF).map_err(failed)?;
-    files.retain(|file| file.parent() == Some(folder.as_path()));
+    let files = models_in(&folder).map_err(failed)?;
     if files.is_empty() {
         let folder = folder.display();
         return Err(format!("no models: no .glb or .gltf file in {folder}"));
@@ -98,7 +104,7 @@ const FIVE_MODELS: [&str; 5] = [
     "George.glb",
 ];
 
-/// Five creatures for measurements. If [`VARIABLE`] is not set, prints that `test` was skipped, and returns none.
+/// Five creatures for measurements. If `CLAMBER_TEST_DATA` is not set, prints that `test` was skipped, and returns none.
 ///
 /// # Panics
 /// As [`file()`].
@@ -107,7 +113,7 @@ pub fn five_creatures(test: &str) -> Result<Vec<Creature>, SceneError> {
     paths.map(|path| Creature::load(&path)).collect()
 }
 
-/// The files of [`five_creatures`]. If [`VARIABLE`] is not set, prints that `test` was skipped, and returns none.
+/// The files of [`five_creatures`]. If `CLAMBER_TEST_DATA` is not set, prints that `test` was skipped, and returns none.
 ///
 /// # Panics
 /// As [`file()`].

@@ -10,7 +10,6 @@
 )]
 
 use std::fmt;
-use std::path::{Path, PathBuf};
 
 use clamber_gltf::load;
 use clamber_scenes::{giant, test_data};
@@ -150,15 +149,6 @@ fn check_models(of: Poses) {
     assert!(files.is_empty() || checked == MODELS, "{checked}");
 }
 
-/// All glTF files of a folder, but not of the folders in it, sorted.
-fn gltf_files(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder).unwrap();
-    let mut files: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
-    files.retain(|file| file.extension().is_some_and(|e| e == "glb" || e == "gltf"));
-    files.sort();
-    files
-}
-
 #[test]
 fn the_giant_in_a_few_poses() {
     check_giant(Poses::OfEachClip(4));
@@ -174,7 +164,7 @@ fn files_of_a_folder() {
     let Some(folder) = std::env::var_os(FILES) else {
         return;
     };
-    let files = gltf_files(folder.as_ref());
+    let files = test_data::models_in(folder.as_ref()).unwrap();
     assert!(!files.is_empty(), "{FILES} has no .glb or .gltf file");
     for file in files {
         let name = file.display().to_string();

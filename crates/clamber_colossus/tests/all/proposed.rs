@@ -1,12 +1,14 @@
 //! Brains that are proposed for third-party creatures.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use crate::animals::animals;
 use crate::sizes::models;
-use crate::support::{TICK, level_ground, on_terrain, person, rider, test_rig, with_people};
+use crate::support::{
+    TICK, level_ground, on_terrain, person, rider, test_models, test_rig, with_people,
+};
 use clamber_animation::rig::{Channel, Clip, Interpolation, JointId, Keyframes, Marker, Skeleton};
 use clamber_animation::{SeamProbe, joint_in_model};
 use clamber_colossus::{
@@ -294,8 +296,7 @@ fn creatures_from_elsewhere_live_for_ten_minutes() {
 /// The proposed legs have the same feet and toes as the legs that were chosen by hand for these files.
 #[test]
 fn legs_are_those_that_people_find() {
-    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
-        eprintln!("SKIPPED legs: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
+    let Some(folder) = test_models("legs") else {
         return;
     };
     for animal in animals() {
@@ -303,7 +304,7 @@ fn legs_are_those_that_people_find() {
         if animal.file == "gltf_spider_animated.gltf" {
             continue;
         }
-        let path = PathBuf::from(&root).join("models").join(animal.file);
+        let path = folder.join(animal.file);
         let file = BrainFile::propose(&rig(&path).unwrap(), 20.0).unwrap();
         let found: BTreeMap<String, Option<String>> = file
             .body

@@ -19,11 +19,10 @@ pub(crate) fn models() -> Vec<PathBuf> {
         env!("CARGO_MANIFEST_DIR"),
         "/../../assets/colossus.glb"
     ))];
-    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
-        eprintln!("SKIPPED models: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
+    let Some(folder) = support::test_models("models") else {
         return all;
     };
-    let folder = std::fs::read_dir(PathBuf::from(root).join("models")).unwrap();
+    let folder = std::fs::read_dir(folder).unwrap();
     let files = folder.map(|entry| entry.unwrap().path());
     all.extend(files.filter(|path| {
         path.extension()

@@ -274,7 +274,7 @@ impl Arena {
         }
     }
 
-    /// Refuses an order to a creature; all others pass.
+    /// Refuses an order to a creature; all others pass. A new kind of order has to be added here or in `check_order`.
     fn check_creature_order(&self, order: &Order, joining: &Joining) -> Result<(), String> {
         match order {
             Order::Sense {
@@ -334,7 +334,20 @@ impl Arena {
                     })
                 })
             }
-            _ => Ok(()),
+            // Listed, so that a new kind of order cannot pass unchecked by oversight.
+            Order::AddFighter { .. }
+            | Order::AddCreature { .. }
+            | Order::RemoveFighter { .. }
+            | Order::RemoveCreature { .. }
+            | Order::RemoveProjectile { .. }
+            | Order::Hurt { .. }
+            | Order::Heal { .. }
+            | Order::Strike { .. }
+            | Order::PlaceFighter { .. }
+            | Order::Checkpoint { .. }
+            | Order::Rise { .. }
+            | Order::AddArrows { .. }
+            | Order::Noise(_) => Ok(()),
         }
     }
 

@@ -80,7 +80,7 @@ pub struct Check {
     pub found: f64,
     /// The largest allowed number.
     pub at_most: f64,
-    /// Place and time of the first failure; `None` if the check holds.
+    /// Place and time of the first fault. `None` if the check holds, or if its number has no place and time.
     pub cause: Option<String>,
 }
 
@@ -276,7 +276,8 @@ impl Watch {
         let radius = climber.config().body.radius;
         let (point, off, is_pushed) = off_its_point(at, &recorded, radius);
         let (contact, sunk) = (support.point.distance(point), (-off).max(0.0));
-        let drift = contact.max(sunk);
+        // Not by `f64::max`, which ignores NaN.
+        let drift = if sunk > contact { sunk } else { contact };
         let what = format!(
             "contact {contact:.1e} m from its material point, body {sunk:.1e} m deep in it"
         );
@@ -338,6 +339,12 @@ impl Watch {
 
     /// Keeps the largest number of a check, and describes the first one beyond its bound.
     fn measure(&mut self, check: &'static str, number: f64, at: At<'_>, what: &str) {
+        // `f64::max` and the comparison ignore NaN.
+        let number = if number.is_nan() {
+            f64::INFINITY
+        } else {
+            number
+        };
         let (largest, cause) = self.found.entry(check).or_default();
         *largest = largest.max(number);
         if number > bound(check) {
@@ -368,4 +375,21 @@ fn describe((battle, place): At<'_>, what: &str) -> String {
         place.y,
         place.z,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::giant::giant;
+
+    #[test]
+    fn nan_fails_a_check() {
+        let (giant, options) = (giant().unwrap(), BattleOptions::ride(0, 1));
+        let battle = Battle::new(&giant, &options).unwrap();
+        let mut watch = Watch::default();
+        watch.measure(DRIFT, f64::NAN, (&battle, DVec3::ZERO), "lost");
+        let checks = watch.checks(&battle, &options);
+        let drift = checks.iter().find(|check| check.name == DRIFT).unwrap();
+        assert!(!drift.holds() && drift.cause.is_some(), "{drift:?}");
+    }
 }

@@ -30,7 +30,7 @@ pub use checks::{
     STANDS_OFF, Watch,
 };
 pub use counts::Counts;
-pub use options::{BattleOptions, Story, positive};
+pub use options::{BattleOptions, Story, positive, within};
 pub use outcrop::mesh as outcrop;
 #[cfg(feature = "record")]
 pub use record::{BattleRecorder, Replay, replay};

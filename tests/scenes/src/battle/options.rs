@@ -78,6 +78,18 @@ pub fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The number of an option, from `least` to `most`.
+///
+/// # Errors
+/// A sentence for the user.
+pub fn within(text: &str, least: f64, most: f64) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (least..=most).contains(&number) => Ok(number),
+        Ok(_) => Err(format!("must be from {least} to {most}")),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
 impl Default for BattleOptions {
     fn default() -> Self {
         Self::parse_from(["battle"])

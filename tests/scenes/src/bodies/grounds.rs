@@ -55,19 +55,8 @@ pub fn ramp(angle: f64, speed: f64) -> Made {
 
 /// Stairs of 0.2 by 0.3 m along +Z, up or down.
 pub fn stairs(up: bool, speed: f64) -> Made {
-    let (tread, count) = (0.3, 60);
-    let riser = DVec3::Y * if up { 0.2 } else { -0.2 };
-    let mut mesh = Mesh::default();
-    mesh.strip(DVec3::new(0.0, 0.0, -5.0), DVec3::Z);
-    let mut at = DVec3::Z;
-    for step in 0..count {
-        mesh.strip(at, at + riser);
-        at += riser;
-        let depth = if step + 1 == count { 6.0 } else { tread };
-        mesh.strip(at, at + DVec3::Z * depth);
-        at += DVec3::Z * depth;
-    }
-    let stairs = Thing::solid(&Solid::Mesh(mesh), SurfaceKind::Stone, still)?;
+    let stairs = Solid::stairs(1.0, 60, if up { 0.2 } else { -0.2 }, 6.0);
+    let stairs = Thing::solid(&stairs, SurfaceKind::Stone, still)?;
     let name = format!("stairs {} at {speed} m/s", if up { "up" } else { "down" });
     let scene = scene(name, speed, vec![stairs], DVec3::ZERO);
     Ok(Scene {

@@ -73,7 +73,7 @@ fn seam() -> Scene {
 
 /// A walk up 3 m of stairs, in one and a half times the time that 4 m/s take on the level.
 fn stairs() -> Scene {
-    let set = Set::new(-DVec3::Z).with_still(Solid::stairs(10));
+    let set = Set::new(-DVec3::Z).with_still(Solid::stairs(0.0, 10, 0.3, 5.0));
     let scene = Scene::new(4, "stairs walked up", 85, set, |seen| {
         let way = seen.end() - seen.start;
         (3.0 - way.y).abs().max(way.x.abs())

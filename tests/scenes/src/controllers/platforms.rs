@@ -140,7 +140,8 @@ fn jump_off_a_lift() -> Scene {
 /// level.
 fn stairs_that_move() -> Scene {
     let velocity = DVec3::new(1.0, 0.5, -1.5);
-    let set = Set::new(-DVec3::Z).with(Solid::stairs(10), move |time| shifted(velocity * time));
+    let stairs = Solid::stairs(0.0, 10, 0.3, 5.0);
+    let set = Set::new(-DVec3::Z).with(stairs, move |time| shifted(velocity * time));
     let name = "stairs that move, 1.9 m/s, walked up";
     let scene = Scene::new(49, name, 85, set, move |seen| {
         let time = seen.dt * seen.positions.len() as f64;

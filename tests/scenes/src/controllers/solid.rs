@@ -57,15 +57,16 @@ impl Solid {
         Self::Mesh(mesh)
     }
 
-    /// Stairs with treads and risers of 0.3 m, 4 m wide, up along +Z from the origin, with 5 m of floor before and
-    /// after.
-    pub fn stairs(count: u32) -> Self {
+    /// Stairs along +Z, 4 m wide: a floor from z = -5 m to `start`, then `count` treads of 0.3 m, each higher than the
+    /// one before by `rise`, which may be negative. The last tread is `last` deep. In metres.
+    pub fn stairs(start: f64, count: u32, rise: f64, last: f64) -> Self {
         let mut mesh = Mesh::default();
-        mesh.strip(DVec3::new(0.0, 0.0, -5.0), DVec3::ZERO);
+        mesh.strip(DVec3::new(0.0, 0.0, -5.0), DVec3::Z * start);
         for step in 0..count {
-            let foot = DVec3::new(0.0, 0.3 * f64::from(step), 0.3 * f64::from(step));
-            let edge = foot + DVec3::Y * 0.3;
-            let depth = if step + 1 == count { 5.0 } else { 0.3 };
+            let before = f64::from(step);
+            let foot = DVec3::new(0.0, rise * before, start + 0.3 * before);
+            let edge = foot + DVec3::Y * rise;
+            let depth = if step + 1 == count { last } else { 0.3 };
             mesh.strip(foot, edge);
             mesh.strip(edge, edge + DVec3::Z * depth);
         }
@@ -116,7 +117,7 @@ impl Mesh {
     }
 
     /// Adds a quadrilateral between two lines along X, 2 m to both sides. It faces up, or towards -Z.
-    pub(crate) fn strip(&mut self, from: DVec3, to: DVec3) {
+    fn strip(&mut self, from: DVec3, to: DVec3) {
         let first = self.positions.len() as u32;
         let side = DVec3::X * 2.0;
         self.positions

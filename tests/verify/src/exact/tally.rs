@@ -20,8 +20,6 @@ pub struct Tally {
     pub unproved: usize,
     /// Claims that are flagged as undecided.
     pub undecided: usize,
-    /// Undecided claims that are too far.
-    pub undecided_far: usize,
     /// Descriptions of the first 3 claims that are late, too far or unproved.
     pub shown: Vec<String>,
 }
@@ -45,7 +43,6 @@ impl Tally {
         self.too_far += usize::from(far && !claim.undecided);
         self.unproved += usize::from(verdict.is_unknown());
         self.undecided += usize::from(claim.undecided);
-        self.undecided_far += usize::from(far && claim.undecided);
         let is_false = late || far && !claim.undecided || verdict.is_unknown();
         if is_false && self.shown.len() < SHOWN {
             let answer = format!("{claim:?} {verdict:?} {known:?}");

@@ -8,6 +8,8 @@
 
 pub(crate) mod life;
 
+use std::io::Write;
+use std::path::PathBuf;
 use std::sync::{Arc, LazyLock};
 
 use clamber_animation::rig::JointId;
@@ -224,13 +226,21 @@ pub(crate) fn person(at: DVec3) -> Person {
     }
 }
 
-/// A skeleton, clips and a skin of the test data; `None`, with a note, without the data.
-pub(crate) fn test_rig(file: &str) -> Option<Rig> {
+/// The folder of the models of the test data. Without the data, prints that a test was skipped, and returns `None`.
+pub(crate) fn test_models(test: &str) -> Option<PathBuf> {
     let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
-        eprintln!("SKIPPED {file}: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
+        let folder = "the folder that holds models/Trex.glb";
+        // Not by `eprintln`: the test harness hides its output when the test passes.
+        let line = format!("SKIPPED {test}: set CLAMBER_TEST_DATA to {folder}\n");
+        let _ = std::io::stderr().write_all(line.as_bytes());
         return None;
     };
-    let path = std::path::Path::new(&root).join("models").join(file);
+    Some(PathBuf::from(root).join("models"))
+}
+
+/// A skeleton, clips and a skin of the test data; `None`, with a note, without the data.
+pub(crate) fn test_rig(file: &str) -> Option<Rig> {
+    let path = test_models(file)?.join(file);
     Some(clamber_gltf::load(path).unwrap().rig)
 }
 
