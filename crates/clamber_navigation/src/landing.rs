@@ -21,7 +21,9 @@ pub struct Landing {
 pub struct Airborne<'a> {
     /// The airborne climber.
     pub climber: &'a Climber,
-    /// The climber's input in every tick. Steering and gripping take effect.
+    /// The climber's input, the same in each tick of the prediction. It has the same effect as in the climber's own
+    /// steps: `walk` steers in the air, and with `grip` the hands catch holds. `jump` asks for a jump in each tick, so
+    /// leave it false.
     pub input: &'a ClimberInput,
     /// The climber's contact rules and modes, as in its own steps. Their knockback is ignored.
     pub rules: &'a StepRules<'a>,

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::NavigationError;
 
-/// The stages of a build.
+/// The stages of a build of a graph, in their order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
@@ -12,18 +12,18 @@ pub enum Stage {
     Seats,
     /// Measures how far hands have to reach.
     Arms,
-    /// Plays the clips.
+    /// Plays the creature's clips, and measures how they move each patch.
     Clips,
     /// Plays jumps from one part of the creature to another.
     Jumps,
 }
 
-/// How far the build of a graph has come: its stage, and the steps of that stage. The build passes it to the caller's
-/// function again and again.
+/// How far the build of a graph has come: its stage, how many steps of that stage are done, and how many there are. The
+/// build passes it to the caller's function again and again. In each stage the steps are counted anew.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// The present stage.
+    /// The stage that the build is in.
     pub stage: Stage,
     /// Number of steps of this stage that are done.
     pub done: usize,

@@ -21,13 +21,14 @@ pub enum ThrowOff {
     Exhausted,
 }
 
-/// How a ride ends.
+/// When and why a climber is thrown off a creature: a prediction of [`FutureSkin::ride`] for a climber that stands on
+/// the creature or holds on to it, and does nothing else.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RideEnd {
-    /// Seconds until the ride ends.
+    /// Seconds from now until the climber is thrown off.
     pub seconds: f64,
-    /// Why the ride ends.
+    /// Why the climber is thrown off.
     pub cause: ThrowOff,
 }
 
@@ -44,7 +45,7 @@ pub enum Ride {
 }
 
 impl Ride {
-    /// How the ride ends; `None` if it does not end or is unknown.
+    /// When and why the climber is thrown off; `None` if it stays on, or if the prediction is unknown.
     pub fn end(self) -> Option<RideEnd> {
         match self {
             Self::Ends(end) => Some(end),

@@ -93,7 +93,8 @@ impl Body {
         Err(BodyError::OtherFigure { body, figure })
     }
 
-    /// The pose, for [`Skeleton::palette`](clamber_surface::rig::Skeleton::palette).
+    /// The transforms of the joints after the last update, for
+    /// [`Skeleton::palette`](clamber_surface::rig::Skeleton::palette).
     pub fn pose(&self) -> &Pose {
         &self.pose
     }
@@ -104,7 +105,7 @@ impl Body {
             .map_or(Similarity::IDENTITY, |memory| memory.similarity())
     }
 
-    /// Hands and feet that came down in the last update.
+    /// The hands and feet that came down on an obstacle in the last update, one [`Plant`] for each.
     pub fn plants(&self) -> &[Plant] {
         &self.plants
     }
@@ -142,7 +143,8 @@ impl Body {
         Some([shape.heel, shape.ball].map(|point| root.point(place.point(point))))
     }
 
-    /// Forgets all places, as after a teleport. The next update puts the body in place at once and reports no plants.
+    /// Forgets where the body, its hands and its feet are, as after a teleport. The next update puts the body in place
+    /// at once, and [`Body::plants`] is empty after it.
     pub fn reset(&mut self) {
         self.memory = None;
         self.player.restart();

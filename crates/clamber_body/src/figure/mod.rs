@@ -123,12 +123,12 @@ impl Figure {
         &self.skeleton
     }
 
-    /// The roles of the skeleton's joints.
+    /// Which joint of the skeleton is which part of a human body.
     pub fn humanoid(&self) -> &Humanoid {
         &self.humanoid
     }
 
-    /// The clips, and the masks for layers.
+    /// The clips of the figure, and the masks of joints for layers.
     pub fn animations(&self) -> &AnimationSet {
         &self.set
     }

@@ -48,7 +48,7 @@ pub struct Humanoid {
     pub spine: Vec<JointId>,
     /// The joints between the chest and the head; may be empty.
     pub neck: Vec<JointId>,
-    /// The head.
+    /// The head's joint.
     pub head: JointId,
     /// The left and the right arm.
     pub arms: [Limb; 2],
@@ -64,13 +64,13 @@ pub struct Humanoid {
 pub struct Limb {
     /// The collar bone of an arm, if the skeleton has one; `None` for legs.
     pub shoulder: Option<JointId>,
-    /// Upper arm or thigh.
+    /// The joint of the upper arm or thigh.
     pub upper: JointId,
-    /// Forearm or shin.
+    /// The joint of the forearm or shin.
     pub lower: JointId,
-    /// Hand or foot.
+    /// The hand or foot at the end of the limb: a joint, or a point.
     pub end: LimbEnd,
-    /// The toes of a leg, if the skeleton has them; `None` for arms.
+    /// The joint of a leg's toes, if the skeleton has one; `None` for arms.
     pub toes: Option<JointId>,
     /// The joints of each finger, from the palm to the tip, found by their names below the forearm; empty for legs. The
     /// thumb tells which way the palm faces; a body does not move the fingers.
@@ -125,12 +125,12 @@ impl Humanoid {
         self.spine.last().copied().unwrap_or(self.hips)
     }
 
-    /// An arm.
+    /// The arm on one side of the body.
     pub fn arm(&self, side: Side) -> &Limb {
         &self.arms[side.index()]
     }
 
-    /// A leg.
+    /// The leg on one side of the body.
     pub fn leg(&self, side: Side) -> &Limb {
         &self.legs[side.index()]
     }

@@ -28,10 +28,13 @@ const STRONGEST_GRAVITY: f64 = 1_000.0;
 pub struct Attack {
     /// The clip that is played once.
     pub clip: String,
-    /// Joints whose skin hurts, such as `["foot.R", "toe.R"]`, or `["thumb.*.R", "hand.R"]`. The last joint is the
-    /// limb's end.
+    /// Joints whose skin deals the limb's blows to people it touches, from the clip's marker `active` to its marker
+    /// `recovery`. For example `["foot.R", "toe.R"]`, or `["thumb.*.R", "hand.R"]`, where `*` stands for any text. The
+    /// last one is the limb's end: `aim` moves it to the prey, and waves, shots and beams start there. If the last name
+    /// has a `*`, it is the last joint of the skeleton that fits.
     pub limb: Vec<String>,
-    /// Hit points that a blow of the limb costs, 0 to 1. If both this and `throw` are 0, the limb hurts nobody.
+    /// Share of a person's full hit points that a blow of the limb costs, 0 to 1. If both this and `throw` are 0, the
+    /// limb hurts nobody.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub damage: f64,
     /// Speed that a blow of the limb gives the person along the limb's motion, metres a second.
@@ -81,7 +84,8 @@ pub struct Wave {
     /// height.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height: Option<f64>,
-    /// Hit points that it costs at its centre, 0 to 1. At a distance d it costs this times 1 - d / radius.
+    /// Share of a person's full hit points that the wave costs at its centre, 0 to 1. At a distance d it costs this
+    /// times 1 - d / radius.
     pub damage: f64,
     /// Speed that it gives at its centre, metres a second, in a direction half way between up and away from the centre.
     /// It falls off as the damage does.
@@ -104,7 +108,7 @@ pub struct Shot {
     /// Seconds after which it disappears if it meets nothing, more than 0 and at most 60; 20 by default.
     #[serde(default = "lasts", skip_serializing_if = "is_default_lasts")]
     pub lasts: f64,
-    /// Hit points that a hit costs, 0 to 1.
+    /// Share of a person's full hit points that the shot costs the person that it touches, 0 to 1.
     pub damage: f64,
     /// Speed that a hit gives the person along the shot's path, metres a second.
     pub throw: f64,
@@ -121,9 +125,10 @@ pub struct Beam {
     pub length: f64,
     /// Radius of the beam, metres.
     pub radius: f64,
-    /// Hit points that a hit costs, 0 to 1.
+    /// Share of a person's full hit points that the beam costs a person that it touches, 0 to 1: once per attack,
+    /// however long the beam stays on the person.
     pub damage: f64,
-    /// Speed that a hit gives the person along the beam, metres a second.
+    /// Speed that the beam gives a person that it touches, along the beam, metres a second: once per attack.
     pub throw: f64,
 }
 

@@ -35,17 +35,20 @@ pub struct BrainFile {
 pub struct MoodFile {
     /// Seconds in which it fades from 1 to 0, at a constant rate.
     pub fades: f64,
-    /// Conditions that raise it.
+    /// Rules that raise the mood. In each tick the mood is at least the largest [`RaiseFile::to`] of the rules whose
+    /// conditions hold.
     pub raised: Vec<RaiseFile>,
 }
 
-/// A rule that raises a mood.
+/// A rule that raises a mood: while its conditions hold, the mood is at least `to`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RaiseFile {
-    /// Conditions that must all hold.
+    /// Conditions on senses and moods, such as `"struck"` or `"riders >= 1"`; [the brain's documentation](crate::brain)
+    /// gives their form. The rule raises its mood while all of them hold; without any, always.
     pub when: Vec<String>,
-    /// Lower bound of the mood while the conditions hold, 0 to 1.
+    /// Value from 0 to 1 to which the rule raises its mood while the conditions hold. A higher mood stays as it is, and
+    /// fades.
     pub to: f64,
 }
 
@@ -92,10 +95,12 @@ pub struct TransitionFile {
     /// Name of the target state, without the names of its outer states. Any state of the file is allowed. If it has
     /// inner states, the creature enters its `start`.
     pub to: String,
-    /// Conditions that must all hold, such as `"riders >= 1"` or `"!prey_seen"`.
+    /// Conditions on senses and moods that must all hold, such as `"riders >= 1"` or `"!prey_seen"`; [the brain's
+    /// documentation](crate::brain) gives their form. An empty list always allows the transition.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub when: Vec<String>,
-    /// Conditions; at least one must hold.
+    /// Conditions, as in `when`, of which at least one must hold. An empty list always allows the transition. If both
+    /// lists have conditions, the transition needs all of `when` and one of `any`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub any: Vec<String>,
     /// A marker that the clip must have passed in this tick.
@@ -116,13 +121,15 @@ pub struct TransitionFile {
     pub interrupts: bool,
 }
 
-/// A time, seconds: fixed, or random within a range. The random time is drawn when the state is entered.
+/// How long a state must have lasted before a transition can leave it ([`TransitionFile::after`]), seconds: fixed, or
+/// random within a range. The time counts from when the state was entered.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum After {
-    /// A fixed time.
+    /// A fixed time, seconds.
     Fixed(f64),
-    /// A random time between these two.
+    /// A random time from the first number to the second one, seconds, both included. It is drawn anew each time that
+    /// the state is entered.
     Between([f64; 2]),
 }
 
@@ -145,7 +152,7 @@ pub enum StateAction {
     Sleep,
 }
 
-/// A walk to a place.
+/// An act: the creature walks to a place, round walls and drops if there is a way.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Walk {
@@ -159,7 +166,7 @@ pub struct Walk {
     pub strike: Option<String>,
 }
 
-/// A turn on the spot.
+/// An act: the creature turns on the spot until it faces a place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Turn {

@@ -146,7 +146,9 @@ impl Brain {
         &self.file
     }
 
-    /// Length of a tick, seconds.
+    /// Length of a tick, seconds: the `tick` that was given to [`Brain::from_json`] or [`Brain::new`]. It never
+    /// changes. Each step of a creature with this brain advances the creature by this time, so an arena of
+    /// `clamber_fight` has to have the same tick.
     pub fn tick(&self) -> f64 {
         self.tick
     }
@@ -161,7 +163,7 @@ impl Brain {
         self.states.is_empty()
     }
 
-    /// All states.
+    /// The ids of all states, outer ones included.
     pub fn states(&self) -> impl ExactSizeIterator<Item = StateId> + use<> {
         (0..self.states.len() as u16).map(StateId)
     }
@@ -172,7 +174,8 @@ impl Brain {
         Some(StateId(found as u16))
     }
 
-    /// A state's name after the names of its outer states, such as `calm/idle`; empty for a state of another brain.
+    /// A state's name after the names of its outer states, such as `calm/idle`. A [`StateId`] is only an index: an id
+    /// from another brain gives the state of this brain with the same index, and an empty text if there is none.
     pub fn path(&self, state: StateId) -> &str {
         self.state(state).map_or("", |state| &state.path)
     }
@@ -213,12 +216,13 @@ impl Brain {
         (line > 0).then_some(line)
     }
 
-    /// The names of the moods, in their order.
+    /// The names of the moods, sorted by name. A mood's position among them is its index for [`BrainState::mood`].
     pub fn moods(&self) -> impl ExactSizeIterator<Item = &str> {
         self.file.moods.keys().map(String::as_str)
     }
 
-    /// The names of the regions, in their order, each with its joints.
+    /// The names of the regions, each with its joints, sorted by name. A region's position among them is its index for
+    /// [`Senses::in_region`](crate::Senses::in_region).
     pub fn regions(&self) -> impl ExactSizeIterator<Item = (&str, &[String])> {
         let regions = self.file.regions.iter();
         regions.map(|(name, joints)| (name.as_str(), joints.as_slice()))

@@ -133,17 +133,20 @@ impl Creature {
         &mut self.surface
     }
 
-    /// The pose of the last step.
+    /// The transforms of the joints, each relative to its parent, after the last step, with feet on the ground and the
+    /// head turned.
     pub fn pose(&self) -> &Pose {
         &self.state.pose
     }
 
-    /// The palette of the last step, for drawing.
+    /// The skinning matrices after the last step, for drawing: one per joint, from mesh space at rest to model space.
+    /// [`Creature::surface`] has the model's place in the world. Before the first step they are those of the first
+    /// pose.
     pub fn palette(&self) -> &Palette {
         &self.palette
     }
 
-    /// The report of the last step.
+    /// Events, blows and the beam of the last step.
     pub fn report(&self) -> &CreatureReport {
         &self.report
     }

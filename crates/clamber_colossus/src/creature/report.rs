@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::brain::StateId;
 
-/// Report of one step of a creature.
+/// What happened in one step of a creature: its events, the blows that it dealt, and its beam.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CreatureReport {
     /// Events of the step, in order.
@@ -11,20 +11,22 @@ pub struct CreatureReport {
     /// Blows that the creature dealt to people. Give each one to its climber's next step, as a knockback
     /// of the same velocity and damage.
     pub blows: Vec<StrikeHit>,
-    /// Beam of the creature's attack, if there is one in this tick.
+    /// Beam of the creature's attack in this tick; `None` if it sends none.
     pub beam: Option<ActiveBeam>,
 }
 
-/// A beam, in world space.
+/// The beam of an attack in one tick, in world space. It lasts from the clip's marker `active` to its marker
+/// `recovery`, and ends at once if the creature stops attacking.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActiveBeam {
-    /// State whose attack sends the beam.
+    /// State of the brain whose attack sends the beam: the one in which the creature attacks now.
+    /// [`Brain::path`](crate::Brain::path) gives its name.
     pub state: StateId,
     /// Start of the beam at the limb's end, in world space, metres.
     pub from: DVec3,
     /// End of the beam: at its full length, or at the obstacle that stops it.
     pub to: DVec3,
-    /// Radius, metres.
+    /// Radius of the beam, metres.
     pub radius: f64,
 }
 
@@ -56,9 +58,9 @@ pub enum CreatureEvent {
         /// The place to which the creature was sent.
         place: DVec3,
     },
-    /// A foot came down.
+    /// A foot of the creature came down: for sounds and dust.
     Plant {
-        /// Index of the leg in the file.
+        /// Index of the leg in [`BodyFile::legs`](crate::BodyFile::legs).
         leg: usize,
         /// Position of the ball of the foot, in world space.
         place: DVec3,
@@ -119,7 +121,7 @@ pub struct StrikeHit {
     /// Change of the person's velocity, metres a second: along the motion of the limb or the shot, along the beam, or
     /// up and away from the origin of the wave.
     pub velocity: DVec3,
-    /// Hit points that the blow costs, 0 to 1.
+    /// Share of the person's full hit points that the blow costs, 0 to 1.
     pub damage: f64,
     /// Point of impact, in world space.
     pub place: DVec3,
@@ -127,7 +129,7 @@ pub struct StrikeHit {
     pub state: StateId,
 }
 
-/// Phase of an attack.
+/// Where an attack is in its clip: before the marker `active`, between `active` and `recovery`, or after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum AttackPhase {
     /// The limb is raised: time to get away.

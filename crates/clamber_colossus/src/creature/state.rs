@@ -191,7 +191,7 @@ impl CreatureState {
         self.motion.speed()
     }
 
-    /// True if a foot stands, by the index of the leg in the file.
+    /// True if a foot stands on the ground, false while it takes a step. `leg` is the index of the leg in the file.
     pub fn is_planted(&self, leg: usize) -> bool {
         self.feet.get(leg).is_some_and(Foot::is_planted)
     }

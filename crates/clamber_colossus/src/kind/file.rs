@@ -20,7 +20,7 @@ pub struct BodyFile {
     /// Weak points in addition to those in the creature's model file. They come after those.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub weak_points: Vec<WeakPointFile>,
-    /// The legs.
+    /// The legs, whose feet are put on the ground. Without any, feet stay where clips have them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub legs: Vec<LegFile>,
     /// The clips that the creature stands, walks and turns with.
@@ -32,7 +32,7 @@ pub struct BodyFile {
     /// A clip of breathing. It is played in a loop and added to clips that are played in a loop.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub breathe: Option<String>,
-    /// Pieces of armour that break off.
+    /// Pieces of armour, which take hits in place of the weak points below them, and break off.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plates: Vec<PlateFile>,
     /// Skin that is fur, in addition to the fur of the creature's own file. A climber holds on to fur.
@@ -113,26 +113,27 @@ pub struct ClipFile {
     /// attack, `impact`, and markers that transitions wait for. They replace the clip's own markers of the same name.
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub markers: BTreeMap<String, Times>,
-    /// Seconds that are added to the clip, in which it returns from its end to its first pose: more than 0, at most 10.
-    /// It is for a clip that is played in a loop but ends in another pose than it begins with: without it the skin
-    /// jumps at the seam, and throws off riders. If only the last key frame is missing, give the time of a frame.
-    /// Markers stay within the clip as it is in its file.
+    /// Seconds that are added to the clip's end, in which it returns to its first pose: more than 0, at most 10. It is
+    /// for a clip that is played in a loop but ends in another pose than it begins with: without it the skin jumps at
+    /// the seam, and throws off riders. If only the last key frame is missing, give the time of a frame. The added time
+    /// has no markers: a time in `markers` beyond the clip's length in its file is an error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub close: Option<f64>,
 }
 
-/// One time or several times.
+/// The times at which a clip has a marker of one name ([`ClipFile::markers`]), seconds after its first key frame. In
+/// the file it is a number or a list of numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Times {
-    /// A single time.
+    /// The marker occurs once, at this time, seconds.
     One(f64),
-    /// Any number of times.
+    /// The marker occurs at each of these times, seconds.
     Several(Vec<f64>),
 }
 
 impl Times {
-    /// All its times.
+    /// All times of the marker, seconds, as they stand in the file.
     pub fn all(&self) -> &[f64] {
         match self {
             Self::One(time) => core::slice::from_ref(time),
@@ -189,7 +190,7 @@ fn is_false(value: &bool) -> bool {
     !value
 }
 
-/// A leg.
+/// A leg whose foot is put on the ground: its joints, and how its knee bends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LegFile {
@@ -221,9 +222,10 @@ pub enum Knee {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GaitFile {
-    /// The clip of standing.
+    /// Name of the clip that is played in a loop while the creature stands.
     pub idle: String,
-    /// The clip of walking.
+    /// Name of the clip that is played in a loop while the creature walks. It is a walk on the spot; `speed` says how
+    /// fast the creature moves meanwhile.
     pub walk: String,
     /// Speed over ground: how far it walks in a second of the clip, in heights of the creature, so that neither its
     /// size nor the unit of its file matters. `None` takes the speed in the clip's extras, or without one the speed of
@@ -234,14 +236,16 @@ pub struct GaitFile {
     /// by steps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turn: Option<[String; 2]>,
-    /// Rate of turning on the spot, degrees a second at the clips' own speed.
+    /// Rate of turning on the spot, degrees a second, while the clips play at the speed of their file. A creature that
+    /// plays its clips slower ([`BodyFile::made_for`]) turns slower in proportion.
     pub turn_deg: f64,
-    /// Rate of turning while it walks, degrees a second at the clips' own speed.
+    /// Rate of turning while it walks, degrees a second, while the clips play at the speed of their file. A creature
+    /// that plays its clips slower ([`BodyFile::made_for`]) turns slower in proportion.
     pub steer_deg: f64,
 }
 
-/// A piece of armour. It staggers each time that the damage since the last stagger reaches `stagger`, and breaks off at
-/// the last of `count` staggers.
+/// A piece of armour: triangles of the skin on which a hit hurts no weak point. It staggers each time that the damage
+/// to it since its last stagger reaches `stagger`, and breaks off at the last of `count` staggers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlateFile {
@@ -250,9 +254,10 @@ pub struct PlateFile {
     /// The plate's triangles are those with this number in `SurfaceTag::user`, which is `"user"` in a material's
     /// extras. More than 0.
     pub user: u32,
-    /// Damage that makes it stagger, more than 0.
+    /// Damage to this plate since its last stagger at which it staggers again, more than 0, in the same unit as hit
+    /// points of weak points.
     pub stagger: f64,
-    /// Number of staggers after which it breaks off, at least 1.
+    /// Number of this plate's own staggers after which it breaks off, at least 1.
     pub count: u32,
 }
 

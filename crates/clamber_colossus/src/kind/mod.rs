@@ -220,12 +220,12 @@ impl CreatureKind {
         rig
     }
 
-    /// The skeleton.
+    /// The skeleton, with its rest pose, turned to look along +Z ([`BodyFile::facing`]).
     pub fn skeleton(&self) -> &Skeleton {
         &self.skeleton
     }
 
-    /// The clips.
+    /// The clips, with what the brain's file adds to them and turned as the skeleton is, and the rest pose.
     pub fn clips(&self) -> &AnimationSet {
         &self.clips
     }
@@ -240,7 +240,7 @@ impl CreatureKind {
         &self.weak_points
     }
 
-    /// The brain.
+    /// The brain that decides for all creatures of this kind.
     pub fn brain(&self) -> &Brain {
         &self.brain
     }
@@ -278,7 +278,7 @@ impl CreatureKind {
     }
 
     /// True if the walk's speed was measured at the feet, because neither the creature's file nor the brain's file
-    /// gives it.
+    /// gives it. False if one of them gives it, and for a kind that does not walk.
     pub fn is_speed_measured(&self) -> bool {
         self.gait.as_ref().is_some_and(|gait| gait.is_measured)
     }

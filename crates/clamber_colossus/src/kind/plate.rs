@@ -3,14 +3,19 @@ use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use super::PlateFile;
 use crate::brain::{BrainError, BrainProblem, check, whole};
 
-/// A piece of armour of a kind of creature.
+/// A piece of armour that all creatures of a kind have: some triangles of the skin. A hit on them hurts no weak point
+/// below. Instead its damage counts against the plate, which staggers each time that the damage since its last stagger
+/// reaches `stagger`, and breaks off at the last of `count` staggers. Nothing here changes in a fight;
+/// [`CreatureState::plate`](crate::CreatureState::plate) counts down.
 #[derive(Clone, Debug)]
 pub struct Plate {
     /// Name of the plate, from the brain's file.
     pub name: String,
-    /// Damage that makes it stagger.
+    /// Damage to this plate since its last stagger at which it staggers again, in the same unit as hit points of weak
+    /// points. One hit causes one stagger at most.
     pub stagger: f64,
-    /// Number of staggers after which it breaks off.
+    /// Number of this plate's own staggers after which it breaks off, at least 1. The staggers of other plates do not
+    /// count.
     pub count: u32,
     /// The plate's triangles, in ascending order. They are hidden from queries once it is broken.
     pub triangles: Vec<TriangleId>,

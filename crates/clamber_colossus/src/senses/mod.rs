@@ -57,7 +57,7 @@ impl Senses {
         self.set(Sense::Blocked, 0.0);
     }
 
-    /// The value of a sense.
+    /// The value of a sense, in the unit that [`Sense`] gives.
     pub fn get(&self, sense: Sense) -> f64 {
         self.numbers[sense as usize]
     }

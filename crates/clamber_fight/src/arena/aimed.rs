@@ -18,7 +18,7 @@ pub struct Aimed {
     pub place: DVec3,
     /// Index of the open weak point that a hit there would hurt.
     pub weak_point: Option<usize>,
-    /// Index of the whole plate that would take the hit instead.
+    /// Index of the unbroken plate that would take the hit instead.
     pub plate: Option<usize>,
 }
 

@@ -10,8 +10,9 @@ pub struct ArenaConfig {
     pub tick: f64,
     /// Gravity of projectiles, metres a second squared; 9.81 along -Y by default. Climbers have their own.
     pub gravity: DVec3,
-    /// Direction to the sun, in world space, of any length; 45 degrees above +Z by default. A sword shows its light
-    /// only in the sun.
+    /// Direction to the sun, in world space, of any length; 45 degrees above +Z by default. It matters only for
+    /// [`Arena::sword_light`](crate::Arena::sword_light), the rays of light from a fighter's sword that lead to a weak
+    /// point: they show only while neither terrain nor a creature shades the sword's tip. Zero is no sun, and no rays.
     pub sun: DVec3,
     /// Greatest number of arrows that stick at the same time; 500 by default. When there are more, the oldest fall.
     pub stuck_arrows: u32,

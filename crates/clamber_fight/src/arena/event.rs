@@ -57,7 +57,7 @@ pub enum ArenaEvent {
         time: f64,
         /// Index of the open weak point there.
         weak_point: Option<usize>,
-        /// Index of the whole plate that took the hit; weak points below it are not hurt.
+        /// Index of the unbroken plate that took the hit; weak points below it are not hurt.
         plate: Option<usize>,
         /// Damage done to the weak point: at most the hit points that it had left, and 0 if the hit hurt no weak point.
         /// The creature reports the effect in the next step: [`CreatureEvent::Hurt`], [`CreatureEvent::Staggered`].

@@ -11,7 +11,7 @@ use super::member::mark;
 use super::{Arena, ArenaState, CreatureId};
 use crate::fighter::{FighterId, FighterState, fighter_mark};
 
-/// A part of an arena.
+/// A part of an arena of which [`Arena::part_fingerprints`] has a hash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum ArenaPart {

@@ -17,7 +17,8 @@ const NARROW_CONE_ANGLE: f64 = 0.005;
 /// Length of the ray towards the sun, metres. Obstacles farther away cast no shade on the sword.
 const SHADE_DISTANCE: f64 = 2000.0;
 
-/// The light of a sword.
+/// Rays of light from a fighter's sword that lead a player to a weak point, for drawing: [`Arena::sword_light`] makes
+/// them. The nearer the sword points to the weak point, the narrower they are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SwordLight {
     /// Origin of the rays, in world space: the blade's tip.
@@ -36,9 +37,10 @@ pub struct SwordLight {
 }
 
 impl Arena {
-    /// The light of a fighter's sword that points along `aim`, a direction in world space. Its rays gather as the sword
-    /// turns towards the nearest weak point that can be hurt now. `None` without a sword, in the shade of terrain or
-    /// creatures, if no weak point is open, or if `aim` or the direction to the sun is zero.
+    /// Rays of light from a fighter's sword, for drawing: they show the player where the nearest weak point that can be
+    /// hurt now is. `aim` is the direction in which the sword points, in world space; the rays gather as it turns
+    /// towards that weak point. `None` without a sword, if terrain or a creature is between the blade's tip and the
+    /// sun, if no weak point is open, or if `aim` or the direction to the sun is zero.
     pub fn sword_light(
         &self,
         fighter: FighterId,

@@ -266,7 +266,8 @@ impl Arena {
         &self.projectiles
     }
 
-    /// Events of the last step, in order.
+    /// Events of the last step, in the order in which the step produced them: by its phases ([`Arena::step`]), not by
+    /// time within the tick. The next step replaces them. Empty before the first step and after a restore.
     pub fn events(&self) -> &[ArenaEvent] {
         &self.events
     }
@@ -301,7 +302,7 @@ impl Arena {
         }
     }
 
-    /// The projectile with a number; `None` if it is gone.
+    /// The projectile with a number; `None` if it was removed, or if no projectile has had the number yet.
     pub fn projectile(&self, id: ProjectileId) -> Option<&Projectile> {
         let found = self
             .projectiles

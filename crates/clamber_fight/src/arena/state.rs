@@ -29,7 +29,8 @@ pub struct ArenaState {
     pub noises: Vec<Noise>,
 }
 
-/// A creature of a saved arena.
+/// One creature in a saved arena: its number, kind and configuration, and all of it that changes. Its skeleton, clips
+/// and skin are not included; they come from its kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SavedCreature {
     /// The creature's number.
@@ -38,18 +39,18 @@ pub struct SavedCreature {
     pub kind: KindId,
     /// The creature's place at first, and its size.
     pub config: CreatureConfig,
-    /// The creature's changing state.
+    /// All of the creature that changes: its place, clips, brain, wounds, shots and waves.
     pub state: CreatureState,
 }
 
-/// A fighter of a saved arena.
+/// One fighter in a saved arena: its number, its configuration, and all of it that changes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SavedFighter {
     /// The fighter's number.
     pub id: FighterId,
     /// The fighter's body and weapons.
     pub config: FighterConfig,
-    /// The fighter's changing state.
+    /// All of the fighter that changes: its climber, its act, its arrows, and whether it is dead.
     pub state: FighterState,
 }
 

@@ -31,20 +31,20 @@ pub(super) struct Scratch {
 const REACH_IN_RADII: f64 = 20.0;
 
 impl Arena {
-    /// Advances the arena by one tick. `inputs` has one input for each fighter, by ascending number. The rules are the
-    /// default ones: climbers can grip fur.
+    /// Advances the arena by one tick. `inputs` has one input for each fighter, dead ones included, by ascending
+    /// number. The rules are the default ones: climbers can grip fur.
     ///
     /// The order is fixed:
     ///
     /// 1. Fighters that joined, were revived or were moved are moved aside if they have no room, and so are fighters on
-    ///    which an order puts a creature.
+    ///    which an order adds or moves a creature ([`Arena::step_with`]).
     /// 2. Creatures sense what was around them at the end of the last tick, decide, move, and strike. Then their shots
     ///    and waves go on.
     /// 3. Fighters' climbers move among terrain, creatures and each other, and their weapons go on.
-    /// 4. Projectiles go on.
-    /// 5. Hits do their damage, in the order of their times within the tick.
+    /// 4. Projectiles of fighters go on.
+    /// 5. Hits of fighters' weapons do their damage to creatures, in the order of their times within the tick.
     ///
-    /// A creature's blow reaches its fighter in the next step.
+    /// A creature's blow reaches its fighter in the next step: it throws the fighter and costs hit points then.
     ///
     /// # Errors
     /// [`ArenaError::Inputs`], [`ArenaError::InputNotFinite`], [`ArenaError::TerrainId`] and

@@ -7,15 +7,15 @@ use crate::error::{ArenaError, not_negative, positive, within};
 /// A fighter's body and weapons. A fighter does not have a weapon that is `None`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FighterConfig {
-    /// Body and abilities.
+    /// Size and abilities of the fighter's body.
     pub climber: ClimberConfig,
     /// The sword; `None` for a fighter without one.
     pub sword: Option<SwordConfig>,
-    /// The bow.
+    /// The bow; `None` for a fighter without one.
     pub bow: Option<BowConfig>,
-    /// Stones to throw.
+    /// Stones to throw, as many as the fighter likes; `None` for a fighter that throws none.
     pub stones: Option<StoneConfig>,
-    /// Harm by being crushed.
+    /// Damage while obstacles leave the body too little room; `None` for a fighter that takes none.
     pub crush: Option<CrushConfig>,
     /// Hit-stop: seconds for which an impact of its blade holds the fighter still; 0.1 by default. The creature is
     /// never held, since its riders would feel it.
@@ -24,7 +24,7 @@ pub struct FighterConfig {
     pub respawn: Option<f64>,
 }
 
-/// A sword, and its use.
+/// A sword: its measures, how long its cuts and stabs take, and their damage.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SwordConfig {
     /// Shoulder, from the centre of the climber's ball: right, up, and ahead, metres.
@@ -43,9 +43,10 @@ pub struct SwordConfig {
     pub recover: f64,
     /// Angle of the arc, from right to left, radians; 200 degrees by default.
     pub angle: f64,
-    /// Damage of a cut; 0.1 by default.
+    /// Damage of a cut, in a weak point's hit points; 0.1 by default.
     pub cut_damage: f64,
-    /// Seconds to raise the sword for a stab; 0.3 by default.
+    /// Seconds from the first press of the stab button until the sword is raised, and the stab begins to charge; 0.3 by
+    /// default.
     pub raise: f64,
     /// Seconds of charging after which a stab has its full strength; 2 by default.
     pub charge: f64,
@@ -62,7 +63,7 @@ pub struct SwordConfig {
     pub pull_out: f64,
     /// Seconds to pull the blade out after a stab in a fall; 1.6 by default.
     pub pull_out_fallen: f64,
-    /// Damage of a fully charged stab; 1 by default.
+    /// Damage of a fully charged stab, in a weak point's hit points; 1 by default. It is proportional to the charge.
     pub stab_damage: f64,
 }
 
@@ -84,7 +85,8 @@ pub struct BowConfig {
     pub radius: f64,
     /// How deep an arrow sticks in skin or terrain, metres; 0.15 by default.
     pub depth: f64,
-    /// Damage of an arrow at full speed; 0.05 by default. It is proportional to the arrow's energy.
+    /// Damage of an arrow at full speed, in a weak point's hit points; 0.05 by default. It is proportional to the
+    /// arrow's energy.
     pub damage: f64,
     /// Largest angle by which an arrow strays, radians for each metre a second at which the archer moves relative to
     /// its support; 0.004 by default. An arrow never strays by more than 0.5 radians.
@@ -98,23 +100,24 @@ pub struct BowConfig {
 pub struct StoneConfig {
     /// Position of a stone when it is released, from the centre of the climber's ball: right, up, and ahead, metres.
     pub hand: DVec3,
-    /// Speed, metres a second; 18 by default.
+    /// Speed of a stone when it leaves the hand, relative to the fighter, metres a second; 18 by default.
     pub speed: f64,
-    /// Radius, metres; 0.05 by default.
+    /// Radius of a stone, a ball, metres; 0.05 by default.
     pub radius: f64,
-    /// Loudness of its impact; 2 by default.
+    /// Loudness of a stone's impact, which creatures hear, in units of the game; 2 by default. It is the loudness of a
+    /// [`Noise`](clamber_colossus::Noise): brains compare what arrives of it with numbers of their own.
     pub loudness: f64,
     /// Seconds from a throw until the next act can begin; 0.8 by default.
     pub again: f64,
 }
 
-/// Harm by being crushed.
+/// Damage to a fighter while obstacles leave its body too little room: from when on, and how much.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CrushConfig {
     /// How much room may be missing between obstacles, beyond the climber's margin, before it does harm, metres; 0.05
     /// by default.
     pub depth: f64,
-    /// Hit points lost per second; 1 by default.
+    /// Hit points, of which a fighter has 1, that it loses per second while it is crushed; 1 by default.
     pub damage: f64,
 }
 

@@ -41,12 +41,13 @@ impl FighterFrame {
         }
     }
 
-    /// World position of a point that is given relative to the origin: right, up, and ahead, metres.
+    /// World position of a point that is given relative to this frame's own `origin`, the centre of the climber's ball:
+    /// metres to the right, up, and ahead, so the third number is positive in front of the body.
     pub fn at(&self, place: DVec3) -> DVec3 {
         self.origin + self.direction(place)
     }
 
-    /// World direction of a vector that is given by its components right, up, and ahead.
+    /// World direction of a vector that is given by its components right, up, and ahead. Its length stays.
     pub fn direction(&self, direction: DVec3) -> DVec3 {
         self.rotation * DVec3::new(direction.x, direction.y, -direction.z)
     }

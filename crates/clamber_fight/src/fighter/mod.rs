@@ -77,7 +77,7 @@ impl Fighter {
         })
     }
 
-    /// The fighter's number.
+    /// The fighter's number in its arena. It never changes, and no other fighter gets it.
     pub fn id(&self) -> FighterId {
         self.id
     }
@@ -92,12 +92,12 @@ impl Fighter {
         &self.climber
     }
 
-    /// The fighter's current act with its weapons.
+    /// What the fighter does with its weapons now, such as a cut, or drawing the bow.
     pub fn act(&self) -> &WeaponAction {
         &self.state.act
     }
 
-    /// Events and pushes of its climber's last step.
+    /// Events of its climber's last step, and its pushes against obstacles.
     pub fn report(&self) -> &StepReport {
         &self.report
     }

@@ -6,13 +6,14 @@ use serde::{Deserialize, Serialize};
 /// The complete state of a fighter: a plain value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FighterState {
-    /// State of the climber.
+    /// State of its climber: position, velocity, support, stamina and hit points.
     pub climber: ClimberState,
-    /// Current act with its weapons.
+    /// What it does with its weapons now.
     pub act: WeaponAction,
-    /// Buttons of the last tick.
+    /// The [`ClimberInput::actions`](clamber_climber::ClimberInput::actions) of its last input, to tell new presses of
+    /// buttons.
     pub actions: u32,
-    /// Knockback of its next step.
+    /// The blow that reaches it in its next step; `None` without one.
     pub knockback: Option<Knockback>,
     /// Hit points that it loses in the next tick without a blow.
     pub harm: f64,
@@ -34,7 +35,7 @@ pub struct FighterState {
 /// Offset of the indices of plates in the list `harmed` of [`WeaponAction::Cut`]. Indices of weak points are below it.
 pub(super) const HARMED_PLATES: u32 = 1 << 31;
 
-/// An act of a fighter with its weapons.
+/// What a fighter does with its weapons: one thing at a time, from the press of a button until it can do the next.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum WeaponAction {
     /// No act: a new one can begin.

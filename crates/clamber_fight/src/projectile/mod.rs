@@ -31,7 +31,7 @@ pub struct Projectile {
     pub body: ProjectileBody,
     /// Seconds since it was shot, got stuck, or came loose, whichever was last.
     pub seconds: f64,
-    /// Its motion.
+    /// Whether it flies, sticks in something, or falls after it came loose, and where it is.
     pub motion: ProjectileMotion,
 }
 
@@ -39,7 +39,7 @@ pub struct Projectile {
 /// they stay when its fighter leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProjectileBody {
-    /// Radius, metres.
+    /// Radius of the ball that touches obstacles, metres: an arrow's tip, or a stone.
     pub radius: f64,
     /// Drag, 1/m: the deceleration is this times the square of the speed.
     pub drag: f64,
@@ -50,11 +50,12 @@ pub struct ProjectileBody {
     pub damage: f64,
     /// Relative speed at which it does its nominal damage, metres a second.
     pub speed: f64,
-    /// Loudness of its impact; 0 for silent.
+    /// Loudness of its impact, which creatures hear ([`Noise`](clamber_colossus::Noise)), in units of the game; 0 for
+    /// silent.
     pub loudness: f64,
 }
 
-/// Kind of a projectile.
+/// Whether a projectile is an arrow or a stone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum ProjectileKind {
     /// An arrow, which sticks in the obstacle that it hits.
@@ -63,17 +64,19 @@ pub enum ProjectileKind {
     Stone,
 }
 
-/// Motion of a projectile.
+/// Where a projectile is and how it moves after the last tick. It flies first. An arrow then sticks in what it hits. An
+/// arrow that comes loose falls, until it is removed. [`Arena::place`](crate::Arena::place) gives the position and
+/// direction in all three cases.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ProjectileMotion {
     /// The projectile flies.
     Flying {
-        /// The projectile's tip, in world space.
+        /// The tip of the arrow, or the middle of the stone, in world space, metres.
         position: DVec3,
-        /// The projectile's velocity, metres a second.
+        /// Its velocity in world space, metres a second.
         velocity: DVec3,
     },
-    /// The arrow sticks.
+    /// The arrow sticks in a creature or in terrain, and moves with it.
     Stuck {
         /// Attachment to the material; the tip is at its offset, below the surface. On creatures the attachment does
         /// not follow the skin: its `point` and `frame` are from the tick in which the arrow got stuck, and
@@ -84,11 +87,11 @@ pub enum ProjectileMotion {
     },
     /// An arrow that came loose falls, and does no damage: its material is gone, or too many arrows stick.
     Falling {
-        /// The projectile's tip, in world space.
+        /// The arrow's tip, in world space, metres.
         position: DVec3,
-        /// The projectile's velocity, metres a second.
+        /// The arrow's velocity in world space, metres a second.
         velocity: DVec3,
-        /// Direction in which it points; a unit vector.
+        /// Direction in which it points, in world space; a unit vector.
         direction: DVec3,
     },
 }
@@ -98,7 +101,7 @@ pub enum ProjectileMotion {
 pub struct ProjectilePlace {
     /// The tip of an arrow, or the middle of a stone, in world space, metres.
     pub tip: DVec3,
-    /// Direction in which it points; a unit vector.
+    /// Direction in which it points, in world space; a unit vector.
     pub direction: DVec3,
 }
 
@@ -106,7 +109,7 @@ pub struct ProjectilePlace {
 const MOST_OFFSET: f64 = 1e9;
 
 impl Projectile {
-    /// True if it sticks.
+    /// True if it sticks in a creature or in terrain.
     pub fn is_stuck(&self) -> bool {
         matches!(self.motion, ProjectileMotion::Stuck { .. })
     }
@@ -116,7 +119,8 @@ impl Projectile {
         matches!(self.motion, ProjectileMotion::Stuck { at, .. } if at.obstacle == obstacle)
     }
 
-    /// True if it still flies.
+    /// True if it has been in flight since it was shot or thrown. False once it sticks, and while it falls after
+    /// it came loose.
     pub fn is_flying(&self) -> bool {
         matches!(self.motion, ProjectileMotion::Flying { .. })
     }

@@ -9,7 +9,9 @@ use thiserror::Error;
 
 use super::ArenaSession;
 
-/// Watches a ggrs session for a player that leaves badly: the remaining peers know different parts of its inputs.
+/// Watches a ggrs session for a player that leaves while the remaining peers know different parts of its inputs.
+/// [`Watch::advance`] then returns [`AdvanceError::LeftBadly`], at once or after some waiting: the session has to end.
+/// Without the watch, ggrs may panic.
 ///
 /// With three or more peers, each peer may have received a different part of the leaving player's last packets. All
 /// peers then go back to the first tick that one of them does not know. ggrs 0.13 repeats this in each of its steps,

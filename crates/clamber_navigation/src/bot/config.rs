@@ -1,4 +1,6 @@
-/// Settings of a bot.
+/// How a bot climbs: how much shake and tiredness it accepts, and when it plans anew. Shake is the acceleration of the
+/// skin under the climber ([`ClimberState::shake`](clamber_climber::ClimberState::shake)); radii are those of the
+/// climber's ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BotConfig {
@@ -8,9 +10,9 @@ pub struct BotConfig {
     /// stamina that its plan expects there. It also goes on if the creature keeps still by its forecast
     /// ([`Forecast::still`](crate::Forecast::still)) and its stamina is enough for its goal.
     pub tired: f64,
-    /// Stamina at which a rest ends. Default 0.9.
+    /// Stamina, 0 to 1, at which a rest ends. Default 0.9.
     pub rested: f64,
-    /// Stamina that the bot's plans leave unused. Default 0.2.
+    /// Stamina, 0 to 1, that the bot's plans leave unused. Default 0.2.
     pub reserve: f64,
     /// The bot climbs in shakes up to this share of the shake in which it can only hang. Default 0.7.
     pub climbs_in: f64,

@@ -117,7 +117,10 @@ impl Bot {
         self.plans
     }
 
-    /// True if the bot is on a patch of the goal, or near the seat of one.
+    /// True if the climber has reached the bot's goal: it stands on the creature or holds on to it, and its patch, or
+    /// the nearest one if it is on none, is a patch of the goal. Also true if the centre of its ball is within half its
+    /// radius of the seat of such a patch, on the skin as it is now; the seat is where the ball's centre is on a patch
+    /// ([`Patch::seat`](crate::Patch::seat)).
     pub fn is_there(&self, view: &View<'_>) -> bool {
         let Some(patch) = self.patch_below(view) else {
             return false;

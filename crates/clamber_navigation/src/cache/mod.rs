@@ -20,9 +20,9 @@ use crate::{ClimbGraph, GraphConfig, NavigationError, Progress};
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct CachedGraph {
-    /// The graph.
+    /// The creature's graph, read or built.
     pub graph: ClimbGraph,
-    /// Its file.
+    /// Path of the graph's file in the given folder.
     pub file: PathBuf,
     /// How the graph was obtained.
     pub origin: GraphOrigin,

@@ -13,7 +13,7 @@ use crate::survey::Survey;
 #[non_exhaustive]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct Entry {
-    /// The patch.
+    /// The patch that the climber gets onto: an index into [`ClimbGraph::patches`](crate::ClimbGraph::patches).
     pub patch: usize,
     /// Height of the middle of the climber's ball there, above the ground, metres.
     pub height: f64,

@@ -82,7 +82,8 @@ impl ClimbGraph {
         Ok((graph, patch_of))
     }
 
-    /// The patches.
+    /// The patches: the places on the skin where a climber can be. Other items refer to a patch by its index in this
+    /// list.
     pub fn patches(&self) -> &[Patch] {
         &self.patches
     }
@@ -117,14 +118,15 @@ impl ClimbGraph {
         })
     }
 
-    /// The patch of a point of the skin; `None` where a climber can neither stand nor hold on at rest.
+    /// Index in [`ClimbGraph::patches`] of the patch that a point of the skin belongs to; `None` where a climber can
+    /// neither stand nor hold on at rest.
     pub fn patch_of(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Option<usize> {
         let (patch, is_on_it) = self.locator.find(triangle, barycentric)?;
         is_on_it.then_some(patch)
     }
 
-    /// The patch of a point of the skin, or the nearest one at rest; `None` if no patch is within five radii of the
-    /// climber.
+    /// Index in [`ClimbGraph::patches`] of the patch that a point of the skin belongs to, or else of the nearest one at
+    /// rest; `None` if no patch is within five radii of the climber.
     pub fn patch_near(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Option<usize> {
         Some(self.locator.find(triangle, barycentric)?.0)
     }

@@ -14,17 +14,20 @@ use crate::survey::Survey;
 #[non_exhaustive]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct Patch {
-    /// The triangle at the patch's middle.
+    /// The triangle of the skin on which `point`, the patch's middle, lies. With `barycentric` it gives the middle on
+    /// the skin as it moves.
     pub triangle: TriangleId,
     /// Barycentric weights of the patch's middle for the corners of `triangle`, in the mesh's order. Their sum is 1.
     pub barycentric: [f64; 3],
-    /// The material at the middle.
+    /// The surface tag, with the material, of the skin at the middle.
     pub tag: SurfaceTag,
-    /// The middle at rest, in the world, metres.
+    /// The patch's middle at rest, in the world, metres: a point on the skin, the one that the climber touches from
+    /// `seat`.
     pub point: DVec3,
     /// Outward unit normal at the middle, at rest.
     pub normal: DVec3,
-    /// The middle of the climber's ball on this patch, at rest.
+    /// The seat: where the centre of the climber's ball is when the climber stands or holds on at the patch's middle,
+    /// at rest, in the world, metres. It is off the skin.
     pub seat: DVec3,
     /// Area at rest, square metres.
     pub area: f64,

@@ -7,7 +7,8 @@ use glam::DVec3;
 
 use crate::{ClimbGraph, Footing};
 
-/// A goal: a set of patches, and lower bounds of the cost to come from each node to the nearest of them.
+/// A goal: a set of patches, any one of which is to be reached, and lower bounds of the time and stamina that it takes
+/// to reach the nearest of them from each patch.
 #[derive(Clone, Debug)]
 pub struct Goal {
     patches: Vec<usize>,
@@ -33,7 +34,8 @@ struct Least {
 }
 
 impl Goal {
-    /// The goal's patches, in ascending order.
+    /// The patches of the goal: indices into [`ClimbGraph::patches`], sorted from the smallest to the largest. A
+    /// climber that reaches any one of them has reached the goal.
     pub fn patches(&self) -> &[usize] {
         &self.patches
     }

@@ -11,31 +11,33 @@ use crate::clips::{COSINE_STEP, Moment, SLICE_SECONDS};
 use crate::graph::Leap;
 use crate::{ClimbGraph, Footing};
 
-/// A patch and time at which a plan may begin.
+/// A place from which a plan may begin: a patch, and when, how and with how much stamina the climber is there. For a
+/// climber on the creature it is where the climber is now; for one on the ground, a patch onto which it can get
+/// ([`ClimbGraph::starts_on_ground`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
-    /// The patch.
+    /// The patch on which the plan begins: an index into [`ClimbGraph::patches`].
     pub patch: usize,
-    /// How the climber is supported there.
+    /// Whether the climber stands or holds on at that patch.
     pub footing: Footing,
-    /// Seconds from the beginning of the plan until the climber is there.
+    /// Seconds from the beginning of the plan until the climber is on that patch; 0 if it is there already.
     pub seconds: f64,
-    /// The climber's stamina there, 0 to 1.
+    /// Stamina that the climber has when it is on that patch, 0 to 1. If it has yet to get there, what is left then.
     pub stamina: f64,
 }
 
-/// One step of a plan.
+/// One step of a plan: to reach a patch, or to rest on the patch of the step before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PlanStep {
-    /// The patch.
+    /// The patch to which the step leads: an index into [`ClimbGraph::patches`].
     pub patch: usize,
-    /// How the climber is supported there.
+    /// Whether the climber stands or holds on at that patch.
     pub footing: Footing,
-    /// Time of arrival, seconds. If the step before has the same patch and footing, the time until which the climber
-    /// rests there.
+    /// Time of arrival on the patch, seconds after the beginning of the plan. If the step before has the same patch and
+    /// footing, the time until which the climber rests there.
     pub seconds: f64,
-    /// The climber's stamina at that time.
+    /// The climber's stamina at that time, 0 to 1.
     pub stamina: f64,
     /// True if the climber comes from the step before by a jump.
     pub jumps: bool,
@@ -52,12 +54,12 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Time of arrival at the goal, seconds.
+    /// Time of arrival at the goal, seconds after the beginning of the plan.
     pub fn seconds(&self) -> f64 {
         self.steps.last().map_or(0.0, |step| step.seconds)
     }
 
-    /// Stamina that is left at the goal.
+    /// Stamina that is left at the goal, 0 to 1.
     pub fn stamina(&self) -> f64 {
         self.steps.last().map_or(0.0, |step| step.stamina)
     }

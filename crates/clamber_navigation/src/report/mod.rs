@@ -26,11 +26,12 @@ pub struct ClimbReport {
     pub grip_area: f64,
     /// Area on which a climber can stand, square metres.
     pub stand_area: f64,
-    /// Area that a climber reaches from the ground on the creature at rest, jumps between its parts included, square
-    /// metres.
+    /// Area of the skin that a climber reaches from the ground, square metres, with the creature at rest, and for a
+    /// climber that does not tire. It gets on from the ground by hand or by a jump. Jumps from one part of the creature
+    /// to another, such as from a leg to the tail, count as well.
     pub reachable_area: f64,
-    /// The part of `reachable_area` on which the climber can rest, square metres: it can stand there, and the slope is
-    /// at most six tenths of the steepest one that it can stand on.
+    /// The part of `reachable_area` on which the climber can rest, square metres: it can stand there, and the angle of
+    /// the slope is at most six tenths of the steepest angle on which it can stand.
     pub rest_area: f64,
     /// Groups of entries, sorted by the area that is reached from them, largest first.
     pub ways_on: Vec<EntryRoute>,
@@ -47,13 +48,14 @@ pub struct ClimbReport {
 pub struct EntryRoute {
     /// Number of entries in this group: patches onto which a climber gets from the ground ([`Entry`](crate::Entry)).
     pub entries: usize,
-    /// The seat of the lowest of these entries at rest, in the world.
+    /// The seat of the lowest of these entries at rest, in the world, metres: where the centre of the climber's ball is
+    /// there.
     pub place: DVec3,
     /// Area that is reached from them without jumps between parts of the creature, square metres.
     pub area: f64,
 }
 
-/// The report on a weak point.
+/// Whether and how a climber reaches a weak point from the ground, or what it lacks.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -92,9 +94,11 @@ pub enum Missing {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct ClipReport {
-    /// Name of the clip.
+    /// Name of the clip in the creature's file.
     pub name: String,
-    /// The hardest shake, metres per second squared; [`ClipReport::HARDEST`] stands for all harder ones.
+    /// The hardest shake in the clip on any patch that a climber can reach, metres per second squared: the acceleration
+    /// of the skin, low-pass filtered as [`ClimberState::shake`](clamber_climber::ClimberState::shake).
+    /// [`ClipReport::HARDEST`] stands for all harder ones.
     pub hardest_shake: f64,
     /// Area on which a standing climber slips because it gets too steep, square metres.
     pub slips_from: f64,

@@ -21,15 +21,15 @@ const SEARCH_BEHIND: f64 = 0.01;
 /// A shot in flight, which a creature has thrown, spat or fired.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActiveShot {
-    /// State whose attack released the shot.
+    /// State of the brain whose attack released the shot; the creature may have left it since.
     pub state: StateId,
     /// Number of the shot: 0 for the creature's first shot, 1 for the next, and so on.
     pub number: u64,
-    /// Position of the centre, in world space.
+    /// Position of the shot's centre, in world space, metres.
     pub place: DVec3,
-    /// Velocity, metres a second.
+    /// Velocity in world space, metres a second.
     pub velocity: DVec3,
-    /// Radius, metres.
+    /// Radius of the ball that touches people, metres.
     pub radius: f64,
 }
 

@@ -27,16 +27,17 @@ const LEAST_GROUND_NORMAL: f64 = 0.5;
 /// Largest distance between the hits of two rays on the same ground, metres.
 const SAME_GROUND_DISTANCE: f64 = 1e-3;
 
-/// A wave that still spreads.
+/// A shock wave of an attack that still spreads: a growing ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActiveWave {
-    /// State whose attack sent out the wave.
+    /// State of the brain whose attack sent out the wave; the creature may have left it since.
     pub state: StateId,
-    /// Origin of the wave, in world space.
+    /// Centre of the growing ball, in world space, metres. If ground that moves carries the creature, it carries the
+    /// centre of a limb's wave along; a wave of a shot stays.
     pub place: DVec3,
-    /// Current radius, metres.
+    /// Current radius of the ball, metres.
     pub reach: f64,
-    /// Final radius, metres.
+    /// Radius at which the wave ends, metres.
     pub radius: f64,
 }
 
