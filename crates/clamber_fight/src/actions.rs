@@ -4,16 +4,19 @@ use clamber_climber::ClimberInput;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Stab button, a bit of [`ClimberInput::actions`]. The first press raises the sword for a stab, which then charges.
-/// The next press strikes. The charge grows faster while the button stays down. After a stab was broken off, the button
-/// has to be released and pressed again. The upper 16 bits of the actions are left to the game.
+/// Stab button, a bit of [`ClimberInput::actions`]. The first press raises the sword for a stab, if the climber stands,
+/// falls, or grips a hold. The stab then charges, and the next press strikes. The charge grows faster while the button
+/// stays down. After a stab was broken off, the button has to be released and pressed again. The upper 16 bits of the
+/// actions are left to the game.
 pub const STAB: u32 = 1;
-/// Cut button, a bit of [`ClimberInput::actions`]. A press cuts with the sword.
+/// Cut button, a bit of [`ClimberInput::actions`]. A press cuts with the sword, while the climber stands, slides or
+/// falls.
 pub const CUT: u32 = 1 << 1;
-/// Bow button, a bit of [`ClimberInput::actions`]. The bow is drawn while the button is down, and shoots when it is
-/// released.
+/// Bow button, a bit of [`ClimberInput::actions`]. The bow is drawn while the button is down and the climber stands,
+/// slides or falls, and shoots when it is released, if it is drawn far enough
+/// ([`BowConfig::least_draw`](crate::BowConfig::least_draw)).
 pub const BOW: u32 = 1 << 2;
-/// Throw button, a bit of [`ClimberInput::actions`]. A press throws a stone.
+/// Throw button, a bit of [`ClimberInput::actions`]. A press throws a stone, while the climber stands, slides or falls.
 pub const THROW: u32 = 1 << 3;
 
 /// Bit of [`PlayerInput::buttons`] for [`ClimberInput::jump`]. It lies above the eight bits of the actions, like the
@@ -38,8 +41,9 @@ const LONGEST_UNIT_VECTOR: f64 = 1.01;
 /// A player's input for one tick in thirteen bytes, to be sent over a network.
 ///
 /// [`PlayerInput::from_input`] rounds directions to 1/127 and the aim to 0.006 degrees. It sets `order` to 0 (none): a
-/// game sets its own number afterwards. All peers step with [`PlayerInput::to_input`] and so get the same bits. Blows
-/// are not sent, since the arena deals them. Only the lower eight bits of the actions are sent.
+/// game that has requests of its own sets [`PlayerInput::order`] afterwards. All peers step with
+/// [`PlayerInput::to_input`] and so get the same bits. Blows are not sent, since the arena deals them. Only the lower
+/// eight bits of the actions are sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct PlayerInput {
     /// Direction to walk in, along x and z, in 127ths.
@@ -97,7 +101,8 @@ impl PlayerInput {
         }
     }
 
-    /// Converts back to the input that [`Arena::step`](crate::Arena::step) takes.
+    /// Converts back to the input that [`Arena::step`](crate::Arena::step) takes. The rounding stays, and is the same
+    /// on all machines. `order` is left out.
     pub fn to_input(self) -> ClimberInput {
         let part = |x: i8| (f64::from(x) / ROUNDING_STEPS).max(-1.0);
         let [turn, rise] = self.aim;

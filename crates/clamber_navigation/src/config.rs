@@ -17,10 +17,12 @@ pub struct GraphConfig {
     /// rule, as `StepRules::by(&|query| query.usual().with_grip(config.can_grip(&query.tag())))`; otherwise the climber
     /// does not find the holds that the graph promises.
     pub grips: Vec<SurfaceKind>,
-    /// The creature's transform in the world, with its scale. Default: identity.
+    /// The creature's transform from model space to world space. Its scale is the metres per unit of the model.
+    /// Default: identity.
     pub world_from_model: Similarity,
-    /// Height of the ground below the creature, in the world, metres. Default: 0, which fits most files, whose feet
-    /// stand at the origin.
+    /// Height of the ground below the creature, metres: one level plane, at this distance from the world's origin along
+    /// the climber's up ([`ClimberConfig::up`]). Climbers get on from it. Skin has no patches where the climber's ball
+    /// would be in the ground. Default: 0, which fits most files, whose feet stand at the origin.
     pub ground: f64,
     /// The rate at which the creature plays its clips, as a share of the file's, from 0.0001 to 10,000: 1 for a
     /// creature of the size for which the clips were made, less for a larger one. A living creature's rate is
@@ -40,7 +42,7 @@ const CLIP_RATES: std::ops::RangeInclusive<f64> = 1e-4..=1e4;
 const MOST_PLATES: usize = 1 << 16;
 
 impl GraphConfig {
-    /// The defaults for a climber.
+    /// The configuration for a climber, with the defaults of all other fields.
     pub fn new(climber: ClimberConfig) -> Self {
         Self {
             climber,

@@ -6,13 +6,14 @@ use clamber_world::{Obstacle, ObstacleId};
 use crate::NavigationError;
 use crate::future::{FutureSkin, PoseForecast, check_step};
 
-/// The first contact that supports an airborne climber.
+/// A prediction of [`FutureSkin::landing`]: when and how a falling or jumping climber first gets a support, which is
+/// the creature or any other obstacle that it stands on, holds on to or hangs from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Landing {
-    /// Seconds until the landing.
+    /// Seconds from now until the landing: a whole number of ticks.
     pub seconds: f64,
-    /// The climber's state at the landing, with the support that it stands on, holds or hangs from.
+    /// The climber's predicted state at the landing, with the support that it stands on, holds or hangs from.
     pub state: ClimberState,
 }
 
@@ -34,9 +35,10 @@ pub struct Airborne<'a> {
 }
 
 impl FutureSkin {
-    /// Predicts where a falling or jumping climber comes down on the creature as it moves: steps the climber, tick by
-    /// tick, until it stands, holds on or hangs. `None` if it does not do so within `most` seconds, or before the
-    /// future is no longer known. `dt` is the length of a tick, seconds. A million ticks at most are stepped.
+    /// Predicts where a falling or jumping climber comes down, on the creature as it moves or on another obstacle:
+    /// steps the climber, tick by tick, until it stands, holds on or hangs. `None` if it does not do so within `most`
+    /// seconds, or before the future is no longer known. `dt` is the length of a tick, seconds. A million ticks at most
+    /// are stepped.
     ///
     /// # Errors
     /// [`NavigationError::Climber`] if the climber refuses the input, [`NavigationError::Surface`] if a pose does not

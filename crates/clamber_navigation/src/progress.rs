@@ -27,7 +27,7 @@ pub struct Progress {
     pub stage: Stage,
     /// Number of steps of this stage that are done.
     pub done: usize,
-    /// Number of steps in this stage.
+    /// Number of all steps of this stage, the ones that are done included.
     pub of: usize,
 }
 

@@ -16,7 +16,7 @@ pub struct BodyInput<'a> {
     pub config: &'a ClimberConfig,
     /// Obstacles that hands and feet can touch; the same as in the climber's step.
     pub obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
-    /// The point that the eyes look at, in world space; `None` for straight ahead.
+    /// The point that the eyes look at, in world space, metres; `None` for straight ahead.
     pub look_at: Option<DVec3>,
 }
 

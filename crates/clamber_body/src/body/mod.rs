@@ -99,7 +99,8 @@ impl Body {
         &self.pose
     }
 
-    /// Position, rotation and scale of the model in the world. The identity before the first update.
+    /// Position, rotation and scale of the model in the world after the last update: from model space to world space,
+    /// metres. The identity before the first update.
     pub fn world_from_model(&self) -> Similarity {
         self.memory
             .map_or(Similarity::IDENTITY, |memory| memory.similarity())
@@ -124,8 +125,10 @@ impl Body {
         limb.hold().map(|hold| &hold.attachment)
     }
 
-    /// The point of a hand or foot that touches its hold, in world space: the middle of the palm, or the sole. `None`
-    /// before the first update.
+    /// The point of a hand or foot with which it touches what it is on, in world space, metres, in the pose of the last
+    /// update: the middle of a palm, or the part of a foot that is down: the sole below the ankle, the heel, the ball
+    /// or the toes. A hand or foot in the air has such a point, too; [`Body::hold`] tells whether it is on anything.
+    /// `None` before the first update.
     pub fn touching_point(&self, figure: &Figure, extremity: Extremity) -> Option<DVec3> {
         let memory = self.memory.as_ref()?;
         let limb = &memory.limbs[extremity.index()];
@@ -135,7 +138,8 @@ impl Body {
         Some(memory.root.point(place.point(touching)))
     }
 
-    /// The heel and the ball of a foot, both on the sole, in world space. `None` before the first update.
+    /// The heel and the ball of a foot, both on the sole, in world space, metres, in the pose of the last update.
+    /// `None` before the first update.
     pub fn sole(&self, figure: &Figure, side: Side) -> Option<[DVec3; 2]> {
         let root = self.memory.as_ref()?.root;
         let shape = figure.limb(Extremity::Foot(side));

@@ -13,7 +13,7 @@ impl Side {
     /// Left, then right.
     pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
 
-    /// 0 for left, 1 for right.
+    /// 0 for left, 1 for right: the index into a pair such as [`Humanoid::arms`](crate::Humanoid::arms).
     pub fn index(self) -> usize {
         self as usize
     }

@@ -44,15 +44,16 @@ pub(crate) use reference::reference;
 pub struct Humanoid {
     /// The joint that carries the spine and both legs.
     pub hips: JointId,
-    /// The joints above the hips, up to the chest, which carries both arms. Empty if the hips carry the arms.
+    /// The joints above the hips, from the bottom up. The last one is the chest, which carries both arms. Empty if the
+    /// hips carry the arms.
     pub spine: Vec<JointId>,
-    /// The joints between the chest and the head; may be empty.
+    /// The joints between the chest and the head, both left out, from the bottom up; may be empty.
     pub neck: Vec<JointId>,
     /// The head's joint.
     pub head: JointId,
-    /// The left and the right arm.
+    /// The left and the right arm, in this order.
     pub arms: [Limb; 2],
-    /// The left and the right leg.
+    /// The left and the right leg, in this order.
     pub legs: [Limb; 2],
     /// Direction that the body faces in its bind pose: a level unit vector in model space. +Z in most files.
     pub facing: DVec3,
@@ -81,15 +82,19 @@ pub struct Limb {
     pub lengths: [f64; 2],
 }
 
-/// The hand or foot at the end of a limb.
+/// What stands for the hand or foot at the end of a limb in the skeleton: a joint below the limb, a joint elsewhere, or
+/// a mere point. It does not tell a hand from a foot: an arm ends in a hand, a leg in a foot.
+/// [`Extremity`](crate::Extremity) names one of the four hands and feet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimbEnd {
-    /// A joint below the lower bone; it moves with the bone.
+    /// The joint of the hand or foot, which is below the lower bone in the skeleton and moves with it.
     Joint(JointId),
-    /// A joint that does not hang from the limb, as in files with baked controls. Code that poses the limb has to move
-    /// this joint to the given point in the space of the lower bone.
+    /// The joint of the hand or foot, if it is not below the limb in the skeleton, as in files with baked controls.
+    /// Code that poses the limb has to move this joint to the given point, which is in the space of the lower bone,
+    /// model units.
     Beside(JointId, DVec3),
-    /// A point in the space of the lower bone, between several joints: a hand that consists of fingers alone.
+    /// No joint, but a point between several joints: a hand that consists of fingers alone. The point is in the space
+    /// of the lower bone, model units.
     Point(DVec3),
 }
 

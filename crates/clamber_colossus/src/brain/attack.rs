@@ -33,11 +33,13 @@ pub struct Attack {
     /// last one is the limb's end: `aim` moves it to the prey, and waves, shots and beams start there. If the last name
     /// has a `*`, it is the last joint of the skeleton that fits.
     pub limb: Vec<String>,
-    /// Share of a person's full hit points that a blow of the limb costs, 0 to 1. If both this and `throw` are 0, the
-    /// limb hurts nobody.
+    /// Share of a person's full hit points that a blow of the limb costs, from 0 to 1. With 0 a blow only changes the
+    /// person's velocity, by `throw`. If both are 0, the limb itself strikes nobody; a wave, a shot or a beam of the
+    /// attack still does.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub damage: f64,
-    /// Speed that a blow of the limb gives the person along the limb's motion, metres a second.
+    /// Speed that a blow of the limb gives the person along the limb's motion, metres a second, not negative. With 0 a
+    /// blow only costs hit points.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub throw: f64,
     /// How far the limb's end may deviate from where the clip strikes, towards the prey, metres. A leg goes only as far

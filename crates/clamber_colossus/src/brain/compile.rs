@@ -13,10 +13,12 @@ use super::{
 use crate::senses::Sense;
 
 impl Brain {
-    /// Reads a brain from its JSON file, for ticks of `tick` seconds.
+    /// Reads a brain from the text of its JSON file ([the brain's documentation](crate::brain) gives its form), for
+    /// ticks of `tick` seconds: a finite number above 0.
     ///
     /// # Errors
-    /// [`BrainError`], with the line and the state if they are known.
+    /// [`BrainError`] for a text that is no brain file, an unknown name or a number out of its range, with the line and
+    /// the state if they are known.
     pub fn from_json(text: &str, tick: f64) -> Result<Self, BrainError> {
         let file: BrainFile = serde_json::from_str(text).map_err(|error| {
             let problem = BrainProblem::Text(without_place(&error.to_string()));
@@ -25,10 +27,10 @@ impl Brain {
         Compiler::new(&file, tick, Lines::of(text)).compile()
     }
 
-    /// Builds a brain from a [`BrainFile`] that was made in code, for ticks of `tick` seconds.
+    /// Builds a brain from a [`BrainFile`] that was made in code, for ticks of `tick` seconds: a finite number above 0.
     ///
     /// # Errors
-    /// [`BrainError`], without a line.
+    /// [`BrainError`] for an unknown name or a number out of its range, without a line.
     pub fn new(file: BrainFile, tick: f64) -> Result<Self, BrainError> {
         Compiler::new(&file, tick, Lines::default()).compile()
     }

@@ -52,7 +52,8 @@ pub struct RaiseFile {
     pub to: f64,
 }
 
-/// A state with either an act or inner states. One of the inner states is current.
+/// A state with either an act or inner states, which are states nested in it. While a state with inner states is
+/// current, exactly one of them is current, too.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StateFile {
@@ -63,7 +64,8 @@ pub struct StateFile {
     /// Where the creature looks. `None` takes the gaze of the outer state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gaze: Option<Gaze>,
-    /// Seconds in which the act fades in; 0.6 by default.
+    /// Seconds in which the clip of the act fades in, from the pose that the creature has when the act begins; 0.6 by
+    /// default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fade: Option<f64>,
     /// Names of weak points that can be hurt in this state although their order hides them otherwise.
@@ -72,7 +74,8 @@ pub struct StateFile {
     /// Seconds after the state was left in which it cannot be entered again.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cooldown: Option<f64>,
-    /// True if the state is never left.
+    /// True for a final state, such as death: no transition leads out of it. Only the game can take the creature out of
+    /// it ([`Creature::enter`](crate::Creature::enter)). False by default.
     #[serde(rename = "final", default, skip_serializing_if = "is_false")]
     pub is_final: bool,
     /// Name of the inner state that the creature enters together with this state: one of `states`. A state with inner
@@ -82,7 +85,9 @@ pub struct StateFile {
     /// Transitions out of this state and of all its inner states.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub transitions: Vec<TransitionFile>,
-    /// The inner states by name.
+    /// The inner states: states that are nested in this one, by name. While this state is current, so is exactly one of
+    /// them; `start` names the one that is entered with it. Names are unique in the whole file. Empty by default, for a
+    /// state without inner states.
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub states: BTreeMap<String, StateFile>,
 }
@@ -103,7 +108,8 @@ pub struct TransitionFile {
     /// lists have conditions, the transition needs all of `when` and one of `any`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub any: Vec<String>,
-    /// A marker that the clip must have passed in this tick.
+    /// Name of a marker that the creature's clip must have passed in the last tick. Markers are times with names in a
+    /// clip ([`ClipFile::markers`](crate::ClipFile::markers)). `None` waits for no marker.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<String>,
     /// Seconds that the state must have lasted. A random time is the same for all transitions of a state with the same
@@ -116,7 +122,9 @@ pub struct TransitionFile {
     /// Weight in the random choice among possible transitions of the same priority; 1 by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weight: Option<f64>,
-    /// True if it may leave an act that otherwise has to be played to its end.
+    /// True if it may leave an act that otherwise has to be played to its end, [`StateAction::Once`] or
+    /// [`StateAction::Attack`]; the clip is broken off then. A creature on its way stops abruptly, unless the new act
+    /// is a walk. If false, the default, the transition is possible only once such an act is over.
     #[serde(default, skip_serializing_if = "is_false")]
     pub interrupts: bool,
 }
@@ -133,7 +141,8 @@ pub enum After {
     Between([f64; 2]),
 }
 
-/// The action of a creature in a state.
+/// What a creature does while a state of its brain is current: it plays a clip, attacks, walks, turns or sleeps. The
+/// field `act` of a state has it ([`StateFile::act`]); a creature in a state without one stands.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StateAction {
@@ -158,10 +167,12 @@ pub enum StateAction {
 pub struct Walk {
     /// The goal of the walk.
     pub to: Place,
-    /// The walk is done within this distance of the goal, metres; with `strike`, within this distance of where that
-    /// clip strikes.
+    /// The walk is done once the goal is within this level distance of the creature's origin, metres; with `strike`,
+    /// once it is within this distance of where that clip strikes.
     pub within: f64,
-    /// The clip of an attack: the creature stops where this clip would strike the goal, and faces the goal.
+    /// Name of the clip of an attack of this brain. The creature stops where the limb of this attack would strike the
+    /// goal, and turned so that it would: not straight towards the goal if the limb strikes to one side. `None`, the
+    /// default, walks to the goal itself and ends with any heading.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strike: Option<String>,
 }
@@ -197,7 +208,7 @@ pub enum Place {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Gaze {
-    /// Where its clips look.
+    /// Where its clips look: the head is not turned.
     #[default]
     Clip,
     /// At changing random places ahead.

@@ -31,7 +31,8 @@ pub use state::{BrainState, Entered};
 pub struct StateId(pub u16);
 
 impl StateId {
-    /// The id as an index into a slice.
+    /// The state's index in the order of [`Brain::states`], from 0: for a slice with one element for each state of its
+    /// brain.
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
@@ -190,7 +191,7 @@ impl Brain {
         self.state(state).map_or(Gaze::Clip, |state| state.gaze)
     }
 
-    /// Seconds in which a state's act fades in.
+    /// Seconds in which the clip of a state's act fades in.
     pub fn fade(&self, state: StateId) -> f64 {
         self.state(state).map_or(DEFAULT_FADE, |state| state.fade)
     }
@@ -200,7 +201,7 @@ impl Brain {
         self.state(state).map_or(&[], |state| &state.exposes)
     }
 
-    /// True if a state is never left.
+    /// True if a state is final: no transition leads out of it.
     pub fn is_final(&self, state: StateId) -> bool {
         self.state(state).is_some_and(|state| state.is_final)
     }

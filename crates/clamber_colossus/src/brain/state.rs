@@ -25,14 +25,17 @@ pub struct BrainState {
     random: u64,
 }
 
-/// A change from one state to another.
+/// A transition that the brain takes in a tick, from one state to another: [`Brain::step`] reports each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entered {
-    /// The innermost state that was left.
+    /// The innermost current state before the transition.
     pub from: StateId,
-    /// The innermost state that was entered.
+    /// The innermost current state after it.
     pub to: StateId,
-    /// True if the transition may leave an act that otherwise has to be played to its end.
+    /// The [`TransitionFile::interrupts`](crate::brain::TransitionFile::interrupts) of the transition that was taken.
+    /// If true, the creature breaks off the clip of the state that it left, and begins the new act at once. If it is on
+    /// its way, it stops abruptly, unless that act is a walk. If false, a clip that has to be played to its end was
+    /// over already, and a creature on its way comes to a stand before a new act other than a walk begins.
     pub interrupts: bool,
 }
 
@@ -55,7 +58,7 @@ impl BrainState {
         state
     }
 
-    /// The innermost current state.
+    /// The current state: the innermost one, where states are nested.
     pub fn current(&self) -> StateId {
         self.current
     }

@@ -6,7 +6,7 @@ use crate::error::ColossusError;
 /// Start, size, seed and limits of a creature.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CreatureConfig {
-    /// Initial position of the model's origin, in world space: between the feet, on the ground.
+    /// Initial position of the model's origin, in world space, metres: between the feet, on the ground.
     pub position: DVec3,
     /// Initial heading, radians about Y. 0 is +Z; positive turns to the creature's left.
     pub yaw: f64,

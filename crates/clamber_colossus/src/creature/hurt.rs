@@ -147,7 +147,7 @@ impl Creature {
     /// `at` is the point of the skin: it gives the region, and the plate that takes the blow if there is one. For a hit
     /// on the creature's surface, this is `MaterialPoint::on_triangle(hit.triangle, hit.barycentric)`; for a contact
     /// with an [`Obstacle`](clamber_world::Obstacle), the contact's `material`. `place` is the point of impact, in
-    /// world space: the first open weak point whose ball contains it takes the `damage`.
+    /// world space, metres: the first open weak point whose ball contains it takes the `damage`.
     pub fn hurt(&mut self, at: &MaterialPoint, place: DVec3, damage: f64) -> f64 {
         if !place.is_finite() || !(0.0..=f64::MAX).contains(&damage) {
             return 0.0;
@@ -208,7 +208,7 @@ impl Creature {
         (near.next().map(|(index, _)| index), plate)
     }
 
-    /// Position of a point of the skin after the last step, in world space.
+    /// Position of a point of the skin after the last step, in world space, metres.
     fn skin_at(&self, at: &MaterialPoint) -> Option<DVec3> {
         let anchor = at.anchor_on(&self.surface)?;
         let tick = self.kind.brain().tick();
@@ -246,7 +246,7 @@ impl Creature {
         if full > 0.0 { left / full } else { 1.0 }
     }
 
-    /// Position of a weak point, in world space; `None` if there is no such weak point.
+    /// Position of a weak point's centre, in world space, metres; `None` if there is no such weak point.
     pub fn weak_point(&self, index: usize) -> Option<DVec3> {
         let point = self.kind.weak_points().get(index)?;
         let frame = self.palette.model_from_joint(point.joint)?;

@@ -24,7 +24,7 @@ pub struct ActiveBeam {
     pub state: StateId,
     /// Start of the beam at the limb's end, in world space, metres.
     pub from: DVec3,
-    /// End of the beam: at its full length, or at the obstacle that stops it.
+    /// End of the beam, in world space, metres: at its full length, or at the obstacle that stops it.
     pub to: DVec3,
     /// Radius of the beam, metres.
     pub radius: f64,
@@ -49,20 +49,20 @@ pub enum CreatureEvent {
     },
     /// The creature has arrived where the game had sent it, and follows its brain again.
     Arrived {
-        /// The place to which the creature was sent.
+        /// The place to which the creature was sent, in world space, metres.
         place: DVec3,
     },
     /// The creature has given up its errand, since it is blocked or its brain is in a final state. It follows its brain
     /// again.
     Stopped {
-        /// The place to which the creature was sent.
+        /// The place to which the creature was sent, in world space, metres.
         place: DVec3,
     },
     /// A foot of the creature came down: for sounds and dust.
     Plant {
         /// Index of the leg in [`BodyFile::legs`](crate::BodyFile::legs).
         leg: usize,
-        /// Position of the ball of the foot, in world space.
+        /// Position of the ball of the foot, in world space, metres.
         place: DVec3,
     },
     /// An attack released a shot: [`Creature::shots`](super::Creature::shots) lists it while it flies.
@@ -71,9 +71,9 @@ pub enum CreatureEvent {
         state: StateId,
         /// Number of the shot.
         number: u64,
-        /// Start of the shot, in world space.
+        /// Start of the shot, in world space, metres.
         place: DVec3,
-        /// Initial velocity, metres a second.
+        /// Initial velocity, in world space, metres a second.
         velocity: DVec3,
     },
     /// A shot struck a person, or met terrain or another creature. There is no event for a shot that ends because its
@@ -83,47 +83,48 @@ pub enum CreatureEvent {
         state: StateId,
         /// Number of the shot.
         number: u64,
-        /// Position of the shot's centre, in world space.
+        /// Position of the shot's centre, in world space, metres.
         place: DVec3,
     },
     /// An attack sent out a wave: [`Creature::waves`](super::Creature::waves) lists it while it spreads.
     Wave {
         /// State whose attack sent out the wave.
         state: StateId,
-        /// Origin of the wave, in world space.
+        /// Centre of the wave, in world space, metres.
         place: DVec3,
-        /// Final radius, metres.
+        /// Radius at which the wave ends, metres.
         radius: f64,
     },
     /// A weak point took damage.
     Hurt {
-        /// Index of the weak point.
+        /// Index of the weak point in [`CreatureKind::weak_points`](crate::CreatureKind::weak_points).
         weak_point: usize,
-        /// The damage done.
+        /// The damage done, in the unit of the weak point's hit points.
         damage: f64,
         /// True if the weak point has no hit points left.
         used_up: bool,
     },
     /// A plate staggered under a blow.
     Staggered {
-        /// Index of the plate.
+        /// Index of the plate in [`CreatureKind::plates`](crate::CreatureKind::plates).
         plate: usize,
         /// True if the plate breaks off: its triangles are hidden from queries, and people on them fall.
         breaks: bool,
     },
 }
 
-/// A blow that a limb, a wave, a shot or a beam dealt to a person.
+/// A blow that a creature dealt to a person in its last step: by a limb, a wave, a shot or a beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrikeHit {
     /// [`Person::id`](super::Person::id) of the person.
     pub person: u64,
-    /// Change of the person's velocity, metres a second: along the motion of the limb or the shot, along the beam, or
-    /// up and away from the origin of the wave.
+    /// Change of the person's velocity, in world space, metres a second: along the motion of the limb or the shot,
+    /// along the beam, or up and away from the centre of the wave.
     pub velocity: DVec3,
     /// Share of the person's full hit points that the blow costs, 0 to 1.
     pub damage: f64,
-    /// Point of impact, in world space.
+    /// Point where the blow met the person, in world space, metres. For a shot or a beam it is on the middle line of
+    /// its path; for a wave, the point of the axis of the person's body that is nearest to the wave's centre.
     pub place: DVec3,
     /// State whose attack dealt the blow.
     pub state: StateId,

@@ -28,7 +28,8 @@ use crate::feet::Foot;
 use crate::kind::CreatureKind;
 use crate::senses::Senses;
 
-/// Everything of a creature that has to be saved: a plain value.
+/// Everything of a creature that changes and has to be saved, as it is after a step: a plain value.
+/// [`Creature::state`](crate::Creature::state) gives the one of a living creature.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CreatureState {
     /// The kind of creature for which this state is known to be valid. A state that was deserialised is checked
@@ -156,12 +157,12 @@ impl CreatureState {
         })
     }
 
-    /// State of the brain.
+    /// State of the brain: the current state, for how long it has been current, moods, and random numbers.
     pub fn brain(&self) -> &BrainState {
         &self.brain
     }
 
-    /// Senses of the last step.
+    /// The creature's senses after the last step.
     pub fn senses(&self) -> &Senses {
         &self.senses
     }
@@ -176,12 +177,12 @@ impl CreatureState {
         self.brain.current()
     }
 
-    /// Position of the model's origin, in world space.
+    /// Position of the model's origin, in world space, metres.
     pub fn position(&self) -> DVec3 {
         self.on_ground.position()
     }
 
-    /// Heading, radians about Y.
+    /// Heading, radians about Y: 0 is +Z, and positive turns to the creature's left.
     pub fn yaw(&self) -> f64 {
         self.motion.yaw()
     }
@@ -191,17 +192,19 @@ impl CreatureState {
         self.motion.speed()
     }
 
-    /// True if a foot stands on the ground, false while it takes a step. `leg` is the index of the leg in the file.
+    /// True if a foot stands on the ground, false while it takes a step. `leg` is the index in
+    /// [`BodyFile::legs`](crate::BodyFile::legs); false if there is no such leg.
     pub fn is_planted(&self, leg: usize) -> bool {
         self.feet.get(leg).is_some_and(Foot::is_planted)
     }
 
-    /// Hit points left of each weak point.
+    /// Hit points left of each weak point, in the order of [`CreatureKind::weak_points`].
     pub fn hit_points(&self) -> &[f64] {
         self.damage.hit_points()
     }
 
-    /// Number of staggers until a plate breaks; 0 if it is broken or does not exist.
+    /// Number of staggers until a plate breaks, by its index in [`CreatureKind::plates`]; 0 if it is broken or does not
+    /// exist.
     pub fn plate(&self, index: usize) -> u32 {
         self.damage.plate(index)
     }

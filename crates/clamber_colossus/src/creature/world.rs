@@ -3,16 +3,21 @@ use clamber_world::{MaterialPoint, Obstacle};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Surroundings of a creature in a tick.
+/// What is around a creature in one tick, for [`Creature::step`](crate::Creature::step): terrain, other creatures,
+/// people and noises. Whoever steps the creature fills it in anew for each tick. An arena of `clamber_fight` does so
+/// itself.
 #[derive(Clone, Copy, Default)]
 pub struct Surroundings<'a> {
-    /// Obstacles that the creature walks on and cannot see through.
+    /// The obstacles of the world, such as ground, walls and rocks. The creature walks on them and goes round those in
+    /// its way. It cannot see through them, and its attacks do not pass through them.
     pub terrain: &'a [&'a dyn Obstacle],
-    /// Skins of other creatures: obstacles that are not ground.
+    /// Skins of the other creatures. They block the creature's way and its attacks, except waves, as terrain does. But
+    /// they are no ground to walk on, and the creature sees through them.
     pub creatures: &'a [&'a dyn Obstacle],
     /// People that the creature may see, feel or strike, as they were at the end of the last tick.
     pub people: &'a [Person],
-    /// Noises in this tick.
+    /// Noises that the creature hears in this tick. It hears a noise only in the ticks in which this list has it. Empty
+    /// without noises.
     pub noises: &'a [Noise],
 }
 
@@ -21,7 +26,8 @@ pub struct Surroundings<'a> {
 pub struct Person {
     /// Id of the person, which stays the same.
     pub id: u64,
-    /// The body, in world space: a person of 1.75 m has ends 0.3 and 1.45 m above its feet, and a radius of 0.3 m.
+    /// The body, in world space, metres: a person of 1.75 m has ends 0.3 and 1.45 m above its feet, and a radius of 0.3
+    /// m.
     pub body: WorldCapsule,
     /// How the person rides this creature; `None` if the person does not.
     pub riding: Option<Riding>,
@@ -39,7 +45,7 @@ pub struct Riding {
 /// A noise that creatures hear.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
-    /// Source of the noise, in world space.
+    /// Source of the noise, in world space, metres.
     pub place: DVec3,
     /// Loudness at the source, in units of the game. A creature within
     /// [`CreatureConfig::hearing`](crate::CreatureConfig) hears it at full loudness; farther away it falls off with the
@@ -61,7 +67,7 @@ impl Surroundings<'_> {
 }
 
 impl Person {
-    /// Middle of the body, in world space.
+    /// Middle of the body, in world space, metres.
     pub fn middle(&self) -> DVec3 {
         0.5 * (self.body.ends[0] + self.body.ends[1])
     }

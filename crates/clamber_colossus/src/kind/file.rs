@@ -14,10 +14,12 @@ pub struct BodyFile {
     /// all other values are about the turned model.
     #[serde(default, skip_serializing_if = "Facing::is_forward")]
     pub facing: Facing,
-    /// Additions to clips, by the clips' names.
+    /// Additions to clips of the creature's own file, by the clips' names: markers, and time at a clip's end to close a
+    /// loop. A name that no clip has is an error.
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub clips: BTreeMap<String, ClipFile>,
-    /// Weak points in addition to those in the creature's model file. They come after those.
+    /// Weak points in addition to those in the creature's model file. Their indices come after the indices of those, in
+    /// the order of this list.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub weak_points: Vec<WeakPointFile>,
     /// The legs, whose feet are put on the ground. Without any, feet stay where clips have them.
@@ -165,16 +167,18 @@ impl FurFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WeakPointFile {
-    /// Name of the weak point.
+    /// Name of the weak point, for the game and for [`StateFile::exposes`](crate::brain::StateFile::exposes).
     pub name: String,
     /// The joint that moves it.
     pub joint: String,
-    /// Place at rest relative to the joint, along the model's axes: +X to the creature's left, +Y up, +Z ahead.
+    /// Centre of the weak point at rest, relative to the joint, along the model's axes: +X to the creature's left, +Y
+    /// up, +Z ahead, in heights of the creature. By default it is at the joint.
     #[serde(default)]
     pub at: [f64; 3],
     /// Radius of the weak point, in heights of the creature, from 0 to 10. Hits on skin within it count.
     pub radius: f64,
-    /// Damage that uses it up, more than 0.
+    /// Damage that uses it up, more than 0. The unit is the game's own: damage of weapons is in the same unit
+    /// ([`Creature::hurt`](crate::Creature::hurt)).
     pub hit_points: f64,
     /// True if the creature's health is 0 once this weak point is used up, whatever the others have left. Without a
     /// major one, health is 0 once all weak points are used up.
@@ -222,7 +226,8 @@ pub enum Knee {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GaitFile {
-    /// Name of the clip that is played in a loop while the creature stands.
+    /// Name of the clip that is played in a loop while the creature stands and plays no other clip: in a state without
+    /// an act, before a blocked attack, and at the end of a walk or a turn.
     pub idle: String,
     /// Name of the clip that is played in a loop while the creature walks. It is a walk on the spot; `speed` says how
     /// fast the creature moves meanwhile.
@@ -265,14 +270,17 @@ pub struct PlateFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HeadFile {
-    /// Joints from the head down. Each has a share, from 0 to 1, of the turn that the joints before it leave; the last
-    /// joint takes all of the rest.
+    /// Names of the joints that turn, from the head down, each above the one before in the skeleton. With each stands
+    /// its share, from 0 to 1, of the turn that the joints before it leave; the last joint takes all of the rest,
+    /// whatever its share.
     pub joints: Vec<(String, f64)>,
     /// The eye at rest relative to the head's joint, along the model's axes: +X to the creature's left, +Y up, +Z
-    /// ahead, in heights of the creature.
+    /// ahead, in heights of the creature. By default it is at the joint.
     #[serde(default)]
     pub eye: [f64; 3],
-    /// Largest turns to either side, and up and down, degrees; 80 and 60 by default.
+    /// Largest angles of the gaze, degrees: first to either side, from 0 to 180, then up and down, from 0 to 90; 80 and
+    /// 60 by default. They count from straight ahead of the part of the body that carries the last of `joints`, as it
+    /// faces in the current pose, not from the head's direction in the clip.
     #[serde(default = "limits")]
     pub limits_deg: [f64; 2],
 }

@@ -266,8 +266,8 @@ impl CreatureKind {
         self.girth
     }
 
-    /// Place of the eye at rest, in model space: from [`BodyFile::head`], or without a head 0.9 of the height above the
-    /// origin.
+    /// Place of the eye at rest, in model space and in the model's units: from [`BodyFile::head`], or without a head
+    /// 0.9 of the height above the origin.
     pub fn eye(&self) -> DVec3 {
         self.eye_in(|joint| joint_in_model(&self.skeleton, self.clips.rest(), joint))
     }

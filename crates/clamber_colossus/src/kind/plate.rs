@@ -9,7 +9,8 @@ use crate::brain::{BrainError, BrainProblem, check, whole};
 /// [`CreatureState::plate`](crate::CreatureState::plate) counts down.
 #[derive(Clone, Debug)]
 pub struct Plate {
-    /// Name of the plate, from the brain's file.
+    /// Name of the plate, from the brain's file, for the game. Names need not be unique: elsewhere a plate is given by
+    /// its index in [`CreatureKind::plates`](crate::CreatureKind::plates).
     pub name: String,
     /// Damage to this plate since its last stagger at which it staggers again, in the same unit as hit points of weak
     /// points. One hit causes one stagger at most.

@@ -14,7 +14,7 @@ pub struct Aimed {
     pub creature: CreatureId,
     /// The point of the creature's skin.
     pub at: MaterialPoint,
-    /// The point's position, in world space.
+    /// The point's position after the last step, in world space, metres.
     pub place: DVec3,
     /// Index of the open weak point that a hit there would hurt.
     pub weak_point: Option<usize>,

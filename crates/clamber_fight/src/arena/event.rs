@@ -51,9 +51,9 @@ pub enum ArenaEvent {
         creature: CreatureId,
         /// The point of the creature's skin.
         at: MaterialPoint,
-        /// Position of that point at the time of the hit, in world space.
+        /// Position of that point at the time of the hit, in world space, metres.
         place: DVec3,
-        /// Time of the hit, as a share of the tick.
+        /// Time of the hit within the tick: 0 is the tick's beginning, 1 its end.
         time: f64,
         /// Index of the open weak point there.
         weak_point: Option<usize>,
@@ -72,11 +72,11 @@ pub enum ArenaEvent {
         creature: CreatureId,
         /// The fighter that was struck.
         fighter: FighterId,
-        /// Change of the fighter's velocity, metres a second.
+        /// Change of the fighter's velocity, in world space, metres a second.
         velocity: DVec3,
         /// Hit points that the blow costs, 0 to 1.
         damage: f64,
-        /// Position of the blow, in world space.
+        /// Point where the blow met the fighter, in world space, metres.
         place: DVec3,
     },
     /// An arrow was shot or a stone was thrown.
@@ -92,7 +92,7 @@ pub enum ArenaEvent {
         projectile: ProjectileId,
         /// The obstacle that it sticks in.
         obstacle: ObstacleId,
-        /// Position of the hit at its time, in world space.
+        /// Position of the hit at its time, in world space, metres.
         place: DVec3,
     },
     /// A stuck arrow falls: the skin or terrain that it stuck in is gone, or too many arrows stick.

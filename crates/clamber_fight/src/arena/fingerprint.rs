@@ -11,15 +11,16 @@ use super::member::mark;
 use super::{Arena, ArenaState, CreatureId};
 use crate::fighter::{FighterId, FighterState, fighter_mark};
 
-/// A part of an arena of which [`Arena::part_fingerprints`] has a hash.
+/// A part of an arena of which [`Arena::part_fingerprints`] has a hash: one creature, one fighter, or all the rest. It
+/// tells in which part two peers or two runs differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum ArenaPart {
-    /// A creature.
+    /// One creature, with its shots and waves.
     Creature(CreatureId),
-    /// A fighter.
+    /// One fighter, without its projectiles.
     Fighter(FighterId),
-    /// Projectiles, noises and counters.
+    /// All projectiles of fighters, the noises, the number of ticks, and the numbers that are given next.
     Rest,
 }
 

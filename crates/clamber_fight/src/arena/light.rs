@@ -21,7 +21,7 @@ const SHADE_DISTANCE: f64 = 2000.0;
 /// them. The nearer the sword points to the weak point, the narrower they are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SwordLight {
-    /// Origin of the rays, in world space: the blade's tip.
+    /// Origin of the rays, in world space, metres: the blade's tip.
     pub origin: DVec3,
     /// The creature whose weak point the rays lead to.
     pub creature: CreatureId,
@@ -31,8 +31,8 @@ pub struct SwordLight {
     pub off: f64,
     /// Half angle of the rays' cone, radians. It shrinks as the sword turns towards the weak point.
     pub spread: f64,
-    /// The rays: unit vectors around a direction between the sword's and the weak point's. At the smallest spread all
-    /// of them lead to the weak point.
+    /// The rays: unit vectors in world space around a direction between the sword's and the weak point's. At the
+    /// smallest spread all of them lead to the weak point.
     pub rays: [DVec3; LIGHT_RAYS],
 }
 

@@ -137,9 +137,9 @@ pub enum Order {
     PlaceCreature {
         /// The creature.
         creature: CreatureId,
-        /// New position of the model's origin.
+        /// New position of the model's origin, in world space, metres.
         position: DVec3,
-        /// The creature's new heading about Y, radians.
+        /// The creature's new heading about Y, radians: 0 is +Z, and positive turns to the creature's left.
         yaw: f64,
     },
     /// Damages a weak point of a creature, open or not: [`Creature::harm`].
@@ -148,7 +148,7 @@ pub enum Order {
         creature: CreatureId,
         /// Index of the weak point.
         weak_point: usize,
-        /// Damage, in the weak point's hit points.
+        /// Damage, in the unit of the weak point's hit points.
         damage: f64,
     },
 }

@@ -8,9 +8,9 @@ use super::{Fighter, FighterFrame, StabTarget, SwordConfig, WeaponAction};
 /// A blade as a line from hilt to tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blade {
-    /// Where the hand holds the blade, in world space.
+    /// Where the hand holds the blade, in world space, metres.
     pub hilt: DVec3,
-    /// Tip of the blade, in world space.
+    /// Tip of the blade, in world space, metres.
     pub tip: DVec3,
 }
 

@@ -27,7 +27,8 @@ pub struct FighterConfig {
 /// A sword: its measures, how long its cuts and stabs take, and their damage.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SwordConfig {
-    /// Shoulder, from the centre of the climber's ball: right, up, and ahead, metres.
+    /// Shoulder, from the centre of the climber's ball: right, up, and ahead of the body
+    /// ([`FighterFrame`](crate::FighterFrame)), metres.
     pub shoulder: DVec3,
     /// Length from the shoulder to the hilt, metres; 0.6 by default.
     pub arm: f64,
@@ -43,7 +44,8 @@ pub struct SwordConfig {
     pub recover: f64,
     /// Angle of the arc, from right to left, radians; 200 degrees by default.
     pub angle: f64,
-    /// Damage of a cut, in a weak point's hit points; 0.1 by default.
+    /// Damage of a cut, in the unit of weak points' hit points
+    /// ([`WeakPointFile::hit_points`](clamber_colossus::WeakPointFile::hit_points)); 0.1 by default.
     pub cut_damage: f64,
     /// Seconds from the first press of the stab button until the sword is raised, and the stab begins to charge; 0.3 by
     /// default.
@@ -59,22 +61,27 @@ pub struct SwordConfig {
     pub reach: f64,
     /// How deep the blade goes into skin, metres; 0.4 by default.
     pub depth: f64,
-    /// Seconds to pull the blade out; 0.6 by default.
+    /// Seconds to pull the blade out after a stab by a fighter that stands or holds on; 0.6 by default. After a stab
+    /// into the air it takes as long.
     pub pull_out: f64,
-    /// Seconds to pull the blade out after a stab in a fall; 1.6 by default.
+    /// Seconds to pull the blade out after a stab in a fall, in which the fighter comes down on the creature with the
+    /// blade below its body ([`WeaponAction::Plunge`](crate::WeaponAction::Plunge)); 1.6 by default.
     pub pull_out_fallen: f64,
-    /// Damage of a fully charged stab, in a weak point's hit points; 1 by default. It is proportional to the charge.
+    /// Damage of a fully charged stab, in the unit of weak points' hit points, as `cut_damage`; 1 by default. It is
+    /// proportional to the charge.
     pub stab_damage: f64,
 }
 
 /// A bow and its arrows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BowConfig {
-    /// Tip of an arrow when it is released, from the centre of the climber's ball: right, up, and ahead, metres.
+    /// Tip of an arrow when it is released, from the centre of the climber's ball: right, up, and ahead of the body
+    /// ([`FighterFrame`](crate::FighterFrame)), metres. The aim does not turn it.
     pub nock: DVec3,
     /// Seconds until the bow is fully drawn; 1 by default.
     pub draw: f64,
-    /// Smallest share of a full draw at which the bow shoots; 0.2 by default.
+    /// Smallest share of a full draw, 0 to 1, at which the bow shoots; 0.2 by default. If the button is released
+    /// sooner, no arrow leaves.
     pub least_draw: f64,
     /// Speed of an arrow from a fully drawn bow, metres a second; 56.4 by default. It is proportional to the draw.
     pub speed: f64,
@@ -85,8 +92,9 @@ pub struct BowConfig {
     pub radius: f64,
     /// How deep an arrow sticks in skin or terrain, metres; 0.15 by default.
     pub depth: f64,
-    /// Damage of an arrow at full speed, in a weak point's hit points; 0.05 by default. It is proportional to the
-    /// arrow's energy.
+    /// Damage of an arrow that meets the skin at [`BowConfig::speed`], in the unit of weak points' hit points
+    /// ([`WeakPointFile::hit_points`](clamber_colossus::WeakPointFile::hit_points)); 0.05 by default. It grows with the
+    /// square of the arrow's speed relative to the skin.
     pub damage: f64,
     /// Largest angle by which an arrow strays, radians for each metre a second at which the archer moves relative to
     /// its support; 0.004 by default. An arrow never strays by more than 0.5 radians.
@@ -98,7 +106,8 @@ pub struct BowConfig {
 /// Stones to throw. They do no damage, but creatures hear them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StoneConfig {
-    /// Position of a stone when it is released, from the centre of the climber's ball: right, up, and ahead, metres.
+    /// Position of a stone when it is released, from the centre of the climber's ball: right, up, and ahead of the body
+    /// ([`FighterFrame`](crate::FighterFrame)), metres. The aim does not turn it.
     pub hand: DVec3,
     /// Speed of a stone when it leaves the hand, relative to the fighter, metres a second; 18 by default.
     pub speed: f64,

@@ -6,7 +6,7 @@ use glam::{DMat3, DQuat, DVec3};
 /// the surface that it holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FighterFrame {
-    /// Centre of the climber's ball, in world space.
+    /// Centre of the climber's ball, in world space, metres.
     pub origin: DVec3,
     /// The body's rotation in world space: x is its right, y is up, and -z is ahead. A model that looks along +Z has to
     /// be turned round.

@@ -12,7 +12,8 @@ use crate::projectile::{
 const MOST_STRAY: f64 = 0.5;
 
 impl BowConfig {
-    /// The properties of this bow's arrow in flight and at a hit, with its speed from a fully drawn bow.
+    /// The properties of this bow's arrow in flight and at a hit: its radius, drag, depth and damage, and its speed
+    /// from a fully drawn bow. Creatures do not hear its impact.
     pub fn arrow(&self) -> ProjectileBody {
         ProjectileBody {
             radius: self.radius,
@@ -26,7 +27,8 @@ impl BowConfig {
 }
 
 impl StoneConfig {
-    /// The stone as a projectile.
+    /// The properties of a stone in flight and at a hit: its radius, the speed at which it leaves the hand, and its
+    /// loudness. It has no drag, does no damage, and does not stick.
     pub fn stone(&self) -> ProjectileBody {
         ProjectileBody {
             radius: self.radius,
@@ -46,14 +48,16 @@ impl Fighter {
         aim.try_normalize().unwrap_or_else(ahead)
     }
 
-    /// Position of an arrow's tip when it is released, in world space; `None` without a bow. If terrain or skin is
-    /// between the centre of the climber's ball and this position, a shot begins just before that obstacle.
+    /// Position of an arrow's tip when it is released, in world space, metres; `None` without a bow. If terrain or skin
+    /// is between the centre of the climber's ball and this position, a shot begins just before that obstacle.
     pub fn nock(&self) -> Option<DVec3> {
         let bow = self.config.bow.as_ref()?;
         Some(FighterFrame::of(&self.climber).at(bow.nock))
     }
 
-    /// Velocity of an arrow that is released now without straying, at a draw from 0 to 1; `None` without a bow.
+    /// Velocity of an arrow that is released now without straying, in world space, metres a second: its speed along
+    /// `aim`, plus the fighter's own velocity. `drawn` is the draw, 0 to 1. An `aim` of zero is straight ahead. `None`
+    /// without a bow.
     pub fn arrow_velocity(&self, aim: DVec3, drawn: f64) -> Option<DVec3> {
         let bow = self.config.bow.as_ref()?;
         let own = self.climber.state().velocity;

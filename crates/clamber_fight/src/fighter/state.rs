@@ -28,7 +28,7 @@ pub struct FighterState {
     /// False until it has found room: when it joins, after an order moved or revived it, and after an order put a
     /// creature on it. It looks for room at once, then every half second.
     pub has_begun: bool,
-    /// Spawn point after a death: the centre of its climber's ball.
+    /// Spawn point after a death: the centre of its climber's ball, in world space, metres.
     pub spawn: DVec3,
 }
 
@@ -71,19 +71,19 @@ pub enum WeaponAction {
         seconds: f64,
         /// Share of the full strength, from 0 to 1.
         charge: f64,
-        /// Target of the blade.
+        /// Where the blade goes.
         target: StabTarget,
     },
-    /// Falls with the blade below its body.
+    /// Falls with the blade below its body: a stab in a fall, which lands on the skin that the blade touches.
     Plunge {
         /// Share of the full strength, from 0 to 1.
         charge: f64,
     },
-    /// Pulls the blade out of the skin.
+    /// Pulls the blade out of the skin, or raises it again after a stab into the air.
     PullOut {
         /// Seconds left.
         seconds: f64,
-        /// Position of the blade.
+        /// Where the blade is: in this point of skin, or in the air.
         target: StabTarget,
     },
     /// Draws the bow.
@@ -98,12 +98,14 @@ pub enum WeaponAction {
     },
 }
 
-/// Where a stab goes. The fighter chooses it; a game only reads it.
+/// Where the blade of a stab goes: into a point of a creature's skin, whether or not a weak point is there, or into the
+/// air. The rules of the fight choose it, not the player. A game only reads it, for example to draw the sword.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum StabTarget {
-    /// Not chosen yet: it is chosen at the end of this tick.
+    /// Not chosen yet: the step in which the strike begins chooses it at its end.
     Open,
-    /// A point of a creature's skin. The blade's tip is there when it strikes.
+    /// A point of a creature's skin, which the target follows as the skin moves. The blade's tip is there when it
+    /// strikes. The attachment's offset from the point is a unit vector: the direction of the blade.
     Skin(Attachment),
     /// No skin in reach: the stab hits the air.
     Air,

@@ -31,7 +31,8 @@ pub struct Projectile {
     pub body: ProjectileBody,
     /// Seconds since it was shot, got stuck, or came loose, whichever was last.
     pub seconds: f64,
-    /// Whether it flies, sticks in something, or falls after it came loose, and where it is.
+    /// Whether it flies, sticks in something, or falls after it came loose. To draw it, take its place from
+    /// [`Arena::place`](crate::Arena::place): what is stored here of a stuck arrow does not follow a creature's skin.
     pub motion: ProjectileMotion,
 }
 
@@ -45,10 +46,11 @@ pub struct ProjectileBody {
     pub drag: f64,
     /// How deep its tip goes into the obstacle that it hits, metres.
     pub depth: f64,
-    /// Damage of a hit at [`ProjectileBody::speed`], in a weak point's hit points. It grows with the square of the
-    /// speed relative to the struck point of the skin, which may move.
+    /// Damage of a hit at [`ProjectileBody::speed`], in the unit of weak points' hit points; 0 for a stone. It grows
+    /// with the square of the speed relative to the struck point of the skin, which may move.
     pub damage: f64,
-    /// Relative speed at which it does its nominal damage, metres a second.
+    /// Speed relative to the struck point of the skin at which it does exactly [`ProjectileBody::damage`], metres a
+    /// second. At another speed the damage is multiplied by the square of the ratio.
     pub speed: f64,
     /// Loudness of its impact, which creatures hear ([`Noise`](clamber_colossus::Noise)), in units of the game; 0 for
     /// silent.
@@ -96,12 +98,14 @@ pub enum ProjectileMotion {
     },
 }
 
-/// Position and direction of a projectile after a tick.
+/// Position and direction of a projectile in world space, for drawing it after a step:
+/// [`Arena::place`](crate::Arena::place) gives it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProjectilePlace {
     /// The tip of an arrow, or the middle of a stone, in world space, metres.
     pub tip: DVec3,
-    /// Direction in which it points, in world space; a unit vector.
+    /// Direction in which it points, in world space; a unit vector. While the projectile flies it is the direction of
+    /// its velocity, afterwards that of the arrow's shaft.
     pub direction: DVec3,
 }
 

@@ -113,7 +113,8 @@ impl InputPredictor<PlayerInput> for PredictPlayer {
     }
 }
 
-/// Handles ggrs's requests, and keeps events until they are confirmed.
+/// The arena's side of one ggrs session: it saves, restores and steps the arena as the session requests, and keeps
+/// events until they are confirmed.
 #[derive(Clone, Debug)]
 pub struct Rollback {
     /// The arena's tick when the session began.
@@ -123,7 +124,9 @@ pub struct Rollback {
 }
 
 impl Rollback {
-    /// Creates a handler for an arena at the beginning of a session.
+    /// Creates the handler of the requests of a new session. Each peer calls it once per session, before the session's
+    /// first tick, with the arena as it is then; an arena that was stepped before is allowed. Only the arena's tick is
+    /// kept.
     pub fn new(arena: &Arena) -> Self {
         Self {
             began: arena.tick(),

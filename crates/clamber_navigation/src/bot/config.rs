@@ -12,11 +12,13 @@ pub struct BotConfig {
     pub tired: f64,
     /// Stamina, 0 to 1, at which a rest ends. Default 0.9.
     pub rested: f64,
-    /// Stamina, 0 to 1, that the bot's plans leave unused. Default 0.2.
+    /// Stamina, 0 to 1, that the bot holds back: it plans as if it had this much less than it has, but not less than 0,
+    /// and rests until it has this much more than its plan asks for, but not more than 1. Default 0.2.
     pub reserve: f64,
     /// The bot climbs in shakes up to this share of the shake in which it can only hang. Default 0.7.
     pub climbs_in: f64,
-    /// Distance by which the bot aims ahead on its way, radii of the climber. Default 3.
+    /// How far ahead of itself, in a straight line, the bot looks along its way for the point that it steers to, radii
+    /// of the climber. It steers to a nearer point where the way bends, or has a jump or a rest. Default 3.
     pub ahead: f64,
     /// The bot plans anew if it is farther from its way than this many radii. Default 4.
     pub off_its_way: f64,

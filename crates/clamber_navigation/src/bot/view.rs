@@ -8,28 +8,31 @@ use super::Target;
 use crate::graph::{Corner, Patch, Spot, spot_on};
 use crate::{Forecast, Goal};
 
-/// The danger that a creature is to a climber on the ground.
+/// How dangerous the creature is now to a climber on the ground, in three levels: the game sets [`View::danger`] in
+/// each tick from what the creature does, and the bot only reads it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Danger {
-    /// The creature keeps still: it may be approached.
+    /// The creature keeps still: the bot approaches it and gets on.
     #[default]
     None,
-    /// The creature walks about.
+    /// The creature walks about: the bot stays [`BotConfig::keeps_away`](crate::BotConfig::keeps_away) radii away from
+    /// the place where it wants to get on.
     Moves,
-    /// The creature strikes.
+    /// The creature strikes: the bot runs away from it, once this has lasted for
+    /// [`BotConfig::reaction`](crate::BotConfig::reaction) seconds.
     Attacks,
 }
 
 /// The state of the world that a bot reads in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
-    /// Time, seconds.
+    /// The present time, seconds, by a clock that starts anywhere and goes on from tick to tick.
     pub seconds: f64,
     /// The climber that the bot drives.
     pub climber: &'a Climber,
     /// The creature's obstacle id.
     pub creature: ObstacleId,
-    /// The creature's skin.
+    /// The creature's skin, as posed in this tick.
     pub surface: &'a SkinnedSurface,
     /// The bot's goal.
     pub goal: &'a Goal,

@@ -131,8 +131,9 @@ impl ClimbGraph {
         Some(self.locator.find(triangle, barycentric)?.0)
     }
 
-    /// True if a patch exists in the skin's present state: its own triangle is enabled, and the plate above it is
-    /// removed.
+    /// True if a climber finds a patch on the skin in its present state: the patch's own triangle is enabled, and no
+    /// plate covers the patch. A plate ([`Patch::below`]) covers it until its triangles are disabled. False if the
+    /// graph has no such patch.
     pub fn is_there(&self, patch: usize, surface: &SkinnedSurface) -> bool {
         self.patches.get(patch).is_some_and(|patch| {
             // One triangle of a plate tells whether it is removed.

@@ -40,8 +40,10 @@ impl Goal {
         &self.patches
     }
 
-    /// The least time from a patch to the goal on a creature at rest, seconds, for a climber that does not tire;
-    /// infinite if no way leads there.
+    /// The least time from a patch to the goal on a creature at rest, seconds, for a climber that does not tire.
+    /// `patch` is an index into [`ClimbGraph::patches`], and `footing` tells whether the climber stands or holds on
+    /// there at first. Infinite if no way leads to the goal, if that footing is not possible on the patch, or if the
+    /// graph has no such patch.
     pub fn least_seconds(&self, patch: usize, footing: Footing) -> f64 {
         let least = self.of(patch, footing);
         least.map_or(f64::INFINITY, |least| least.seconds)
@@ -55,14 +57,15 @@ impl Goal {
     }
 
     /// The least stamina with which a climber gets from a patch to the goal on a creature at rest, 0 to 1, if it rests
-    /// wherever it can; infinite if no stamina is enough.
+    /// wherever it can; infinite if no stamina is enough. `patch` and `footing` are as for [`Goal::least_seconds`].
     pub fn least_stamina(&self, patch: usize, footing: Footing) -> f64 {
         let least = self.of(patch, footing);
         least.map_or(f64::INFINITY, |least| least.stamina)
     }
 
     /// The least time from a patch to the goal on a creature at rest for a climber with some stamina, 0 to 1, rests
-    /// included, seconds; infinite if that stamina is not enough. No plan is faster.
+    /// included, seconds; infinite if that stamina is not enough. No plan is faster. `patch` and `footing` are as for
+    /// [`Goal::least_seconds`].
     ///
     /// Whichever way the climber takes, it has to hold on for at least some time. If this costs more stamina than the
     /// climber has, it has to stand until the difference is refilled. The bound is the sum of both times, and at least
@@ -158,7 +161,8 @@ impl ClimbGraph {
         (0..self.patches.len()).filter(near).collect()
     }
 
-    /// The goal to reach one of some patches. Numbers beyond the graph's patches are left out.
+    /// The goal to reach any one of these patches, given by their indices in [`ClimbGraph::patches`]. Indices beyond
+    /// the list are left out, and repeated ones count once. If none is left, no plan reaches the goal.
     pub fn goal(&self, patches: &[usize]) -> Goal {
         self.goal_strained(patches, 1.0)
     }

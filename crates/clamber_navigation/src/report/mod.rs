@@ -33,7 +33,8 @@ pub struct ClimbReport {
     /// The part of `reachable_area` on which the climber can rest, square metres: it can stand there, and the angle of
     /// the slope is at most six tenths of the steepest angle on which it can stand.
     pub rest_area: f64,
-    /// Groups of entries, sorted by the area that is reached from them, largest first.
+    /// The ways from the ground onto the creature: its entries, grouped so that all entries of a group reach the same
+    /// skin without jumps between parts of the creature. Sorted by the area of that skin, largest first.
     pub ways_on: Vec<EntryRoute>,
     /// The weak points, in their order in the file.
     pub weak_points: Vec<PointReport>,
@@ -41,7 +42,7 @@ pub struct ClimbReport {
     pub clips: Vec<ClipReport>,
 }
 
-/// Entries from which the same skin is reached.
+/// A group of entries from which the same skin is reached without jumps between parts of the creature.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -62,7 +63,7 @@ pub struct EntryRoute {
 pub struct PointReport {
     /// Name of the weak point.
     pub name: String,
-    /// Position of the weak point at rest, in the world.
+    /// Position of the weak point's centre at rest, in the world, metres.
     pub place: DVec3,
     /// True if a climber with full stamina gets there from the ground on the creature at rest. Plates that cover the
     /// point are taken to be gone by then.
