@@ -16,8 +16,9 @@ pub struct Lead {
 /// possible arcs. `None` if the target is out of reach or already at `from`, if the speed is not positive, or if a
 /// number is not finite.
 ///
-/// `target` is the target's position now, `velocity` its constant velocity, and `speed` the arrow's speed. Positions
-/// are in metres, velocities in metres a second, gravity in metres a second squared.
+/// `from` is where the arrow leaves, `target` the target's position now, `velocity` the target's constant velocity,
+/// less the fighter's own if that moves, and `speed` the arrow's speed relative to the fighter. Positions are in world
+/// space, metres, velocities in metres a second, gravity in metres a second squared. With drag an arrow falls short.
 ///
 /// The arrow and the target can meet at the positive roots of `|g|^2 t^4 / 4 - (w.g) t^3 + (|w|^2 - d.g - s^2) t^2 + 2
 /// (d.w) t + |d|^2`, where d is the vector from `from` to the target, w its velocity, g gravity and s the speed. The

@@ -24,7 +24,8 @@ impl<F: FnMut(f64, &mut Palette) -> Option<Similarity>> PoseForecast for F {
     }
 }
 
-/// The skin of a creature at future times. Predictions reuse its memory.
+/// A skin that predictions pose at future times, reused so that they do not allocate. It keeps no results: it serves
+/// any creature that has this mesh and has lost the same triangles.
 #[derive(Clone, Debug)]
 pub struct FutureSkin {
     surface: SkinnedSurface,
@@ -32,7 +33,7 @@ pub struct FutureSkin {
 }
 
 impl FutureSkin {
-    /// Memory for a creature with this skin.
+    /// A skin for predictions about creatures with this mesh ([`SkinnedSurface::mesh`]), with all its triangles.
     pub fn new(mesh: Arc<ColliderMesh>) -> Self {
         Self {
             surface: SkinnedSurface::new(mesh),

@@ -21,7 +21,8 @@ pub struct BodyInput<'a> {
 }
 
 impl<'a> BodyInput<'a> {
-    /// The frame of a climber that is drawn in the state after its last step.
+    /// The input for drawing a climber as it is after its last step, not between two steps, with its eyes straight
+    /// ahead. `obstacles` is as in [`BodyInput::obstacles`].
     pub fn new(climber: &'a Climber, obstacles: &'a [(ObstacleId, &'a dyn Obstacle)]) -> Self {
         Self {
             state: climber.state(),

@@ -93,8 +93,8 @@ impl Body {
         Err(BodyError::OtherFigure { body, figure })
     }
 
-    /// The transforms of the joints after the last update, for
-    /// [`Skeleton::palette`](clamber_surface::rig::Skeleton::palette).
+    /// The transforms of the joints after the last update, each relative to its parent, for
+    /// [`Skeleton::palette`](clamber_surface::rig::Skeleton::palette). The rest pose before the first update.
     pub fn pose(&self) -> &Pose {
         &self.pose
     }

@@ -148,12 +148,12 @@ impl Figure {
         self.upper_body
     }
 
-    /// Length of a straight leg, metres.
+    /// Length of the left leg when it is straight, metres, from the hip joint to the ankle.
     pub fn leg_length(&self) -> f64 {
         self.limb(Extremity::Foot(Side::Left)).length
     }
 
-    /// Length of a straight arm, metres, from shoulder to wrist.
+    /// Length of the left arm when it is straight, metres, from the shoulder joint to the wrist.
     pub fn arm_length(&self) -> f64 {
         self.limb(Extremity::Hand(Side::Left)).length
     }

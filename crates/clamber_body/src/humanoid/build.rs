@@ -40,10 +40,10 @@ impl Humanoid {
     /// chest, neck and toes are optional.
     ///
     /// # Errors
-    /// [`BodyError::Missing`] with all missing joints, [`BodyError::NoJoint`], [`BodyError::Twice`],
-    /// [`BodyError::NotBelow`] if a limb, the chest or the head has the wrong ancestor,
-    /// [`BodyError::NoFacing`], and [`BodyError::Limb`] if inverse kinematics refuse a limb, such as one
-    /// without length.
+    /// [`BodyError::Missing`] with all missing joints, [`BodyError::NoJoint`] if the skeleton does not have a joint,
+    /// [`BodyError::Twice`] if a role or a joint is listed twice, [`BodyError::NotBelow`] if a limb, the chest or the
+    /// head has the wrong ancestor, [`BodyError::NoFacing`] if both legs begin at the same point, seen from above, and
+    /// [`BodyError::Limb`] if inverse kinematics refuse a limb, such as one without length.
     pub fn from_joints(
         skeleton: &Skeleton,
         joints: &[(HumanJoint, JointId)],

@@ -118,7 +118,8 @@ impl LimbEnd {
 }
 
 impl Limb {
-    /// The length of the straight limb, in model units.
+    /// The length of the straight limb in the bind pose, in model units: from the shoulder joint to the wrist, or from
+    /// the hip joint to the ankle.
     pub fn length(&self) -> f64 {
         self.lengths[0] + self.lengths[1]
     }

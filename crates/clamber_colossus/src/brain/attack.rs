@@ -60,10 +60,11 @@ pub struct Attack {
     /// another creature.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beam: Option<Beam>,
-    /// Speed at which the target of a shot or a beam follows the prey, metres a second. The target starts at the middle
-    /// of the prey when the attack begins; if no prey is seen then, one creature's height ahead of the creature, level
-    /// with its feet. It follows the prey while the creature sees it: for a shot until the shot leaves, for a beam
-    /// until the beam ends. A faster person escapes.
+    /// Speed at which the target of a shot or a beam follows the prey, metres a second, from 0, the default, to
+    /// 1,000,000. The target starts at the middle of the prey when the attack begins; if no prey is seen then, one
+    /// creature's height ([`Creature::height`](crate::Creature::height)) ahead of the creature, level with its feet. It
+    /// follows the prey until the shot leaves or the beam ends, but stays where it is while the creature sees no prey.
+    /// A faster person escapes. An attack without a shot and a beam is refused if this is not 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub follows: f64,
 }
@@ -81,9 +82,9 @@ pub struct Wave {
     /// `radius` at once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
-    /// Height above terrain from which people are spared, metres: the wave strikes a person only if the body would
-    /// touch terrain when lowered by this. People in a jump or on another creature are spared. `None` strikes at any
-    /// height.
+    /// Height above terrain from which people are spared, metres, more than 0 and at most 1,000,000: the wave strikes a
+    /// person only if the body would touch terrain when moved down by this. So people are spared who are high enough
+    /// above terrain, in a jump or on another creature. `None` strikes at any height.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height: Option<f64>,
     /// Share of a person's full hit points that the wave costs at its centre, 0 to 1. At a distance d it costs this

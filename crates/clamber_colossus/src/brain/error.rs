@@ -2,7 +2,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-/// Why a brain was refused, and where in its file.
+/// Why a brain was refused, and where in its file: the line and the state, as far as they are known.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub struct BrainError {
     /// The line of the file, from 1; `None` for a brain that was not read from text, or if no single line is at fault.

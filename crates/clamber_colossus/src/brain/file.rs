@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::{Attack, unique};
 use crate::kind::BodyFile;
 
-/// A brain as in its file: states, moods, and the transitions between states.
+/// A brain as in its JSON file, not yet checked: states, moods, and the transitions between states.
+/// [`Brain::new`](crate::Brain::new) makes a brain of it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BrainFile {
@@ -21,7 +22,9 @@ pub struct BrainFile {
     /// all joints that begin with `spine.`, and `"thumb.*.L"` all joints that begin with `thumb.` and end with `.L`.
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub regions: BTreeMap<String, Vec<String>>,
-    /// Names of the game's own senses: numbers that the game sets.
+    /// Names of the game's own senses: numbers that conditions read and that the game sets by
+    /// [`Creature::set_sense`](crate::Creature::set_sense). A number is 0 at first, and stays as it is until the game
+    /// sets it anew. A name that a sense or a mood has already is refused.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub senses: Vec<String>,
     /// The states by name. Names are unique in the file, inner states included.
@@ -33,7 +36,7 @@ pub struct BrainFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MoodFile {
-    /// Seconds in which it fades from 1 to 0, at a constant rate.
+    /// Seconds in which it fades from 1 to 0, at a constant rate: from 0 to 1,000,000, but at least one tick.
     pub fades: f64,
     /// Rules that raise the mood. In each tick the mood is at least the largest [`RaiseFile::to`] of the rules whose
     /// conditions hold.
@@ -64,14 +67,15 @@ pub struct StateFile {
     /// Where the creature looks. `None` takes the gaze of the outer state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gaze: Option<Gaze>,
-    /// Seconds in which the clip of the act fades in, from the pose that the creature has when the act begins; 0.6 by
-    /// default.
+    /// Seconds in which the clip of the act fades in, from the pose that the creature has when the act begins: from 0,
+    /// for no fade, to 1,000,000; 0.6 by default. Walks and turns do not use it, nor does a sleep, which plays no clip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fade: Option<f64>,
-    /// Names of weak points that can be hurt in this state although their order hides them otherwise.
+    /// Names of weak points that can be hurt in this state and its inner states even if their order
+    /// ([`WeakPointFile::order`](crate::WeakPointFile::order)) hides them otherwise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub exposes: Vec<String>,
-    /// Seconds after the state was left in which it cannot be entered again.
+    /// Seconds after the state was left in which no transition enters it again, from 0 to 1,000,000; 0 by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cooldown: Option<f64>,
     /// True for a final state, such as death: no transition leads out of it. Only the game can take the creature out of
@@ -92,8 +96,10 @@ pub struct StateFile {
     pub states: BTreeMap<String, StateFile>,
 }
 
-/// A transition from one state to another. It is possible while `when`, `any`, `on` and `after` all allow it; without
-/// any of them it is taken at once.
+/// A transition from one state to another. It is possible while `when` and `any` (conditions), `on` (a marker) and
+/// `after` (a time) all allow it; without any of these it is taken as soon as its state is entered. Two things hold up
+/// even such a transition: an act that has to be played to its end, unless the transition `interrupts` it, and the
+/// target's [`cooldown`](StateFile::cooldown). If several are possible, `priority` and `weight` decide.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TransitionFile {
@@ -123,8 +129,10 @@ pub struct TransitionFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weight: Option<f64>,
     /// True if it may leave an act that otherwise has to be played to its end, [`StateAction::Once`] or
-    /// [`StateAction::Attack`]; the clip is broken off then. A creature on its way stops abruptly, unless the new act
-    /// is a walk. If false, the default, the transition is possible only once such an act is over.
+    /// [`StateAction::Attack`]; the clip is broken off then. A creature that is walking stops abruptly, unless the new
+    /// act is a walk as well. If false, the default, the transition is possible only once such an act is over; any
+    /// other act can be left at any time. A creature that is walking then comes to a stand first, before an act other
+    /// than a walk begins.
     #[serde(default, skip_serializing_if = "is_false")]
     pub interrupts: bool,
 }

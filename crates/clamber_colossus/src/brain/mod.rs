@@ -235,7 +235,9 @@ impl Brain {
         &self.file.senses
     }
 
-    /// Senses of a creature that senses nothing, with the sizes that this brain needs.
+    /// Senses of a creature that senses nothing, for tests of this brain, with its regions and its game's own senses.
+    /// All numbers are 0, except that health is 1, and that the distances to prey and to a wall and the time since prey
+    /// was seen are infinite.
     pub fn no_senses(&self) -> crate::Senses {
         crate::Senses::nothing(self.file.regions.len(), self.file.senses.len())
     }

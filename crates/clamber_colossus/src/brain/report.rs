@@ -8,14 +8,14 @@ use super::{After, Brain, StateId, Transition};
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrainReport {
     states: Vec<String>,
-    /// States and transitions that can never happen, and states without a way out or to a final state, by ascending
-    /// line of the file.
+    /// States and transitions that can never happen, and states without a way out or, if the brain has final states,
+    /// without a way to one; by ascending line of the file.
     pub never: Vec<Never>,
 }
 
-/// A finding about a brain: a state or a transition that can never happen, a state from which no final state can be
-/// reached ([`StateFile::is_final`](crate::brain::StateFile::is_final)), or a state that is not final and has no way
-/// out. The brain works nevertheless.
+/// A finding about a brain: a state or a transition that can never happen, a state that is not final
+/// ([`StateFile::is_final`](crate::brain::StateFile::is_final)) and has no way out, or, in a brain with final states, a
+/// state from which none of them can be reached. The brain works nevertheless.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Never {

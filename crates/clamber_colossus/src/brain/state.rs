@@ -30,12 +30,13 @@ pub struct BrainState {
 pub struct Entered {
     /// The innermost current state before the transition.
     pub from: StateId,
-    /// The innermost current state after it.
+    /// The innermost current state after the transition.
     pub to: StateId,
     /// The [`TransitionFile::interrupts`](crate::brain::TransitionFile::interrupts) of the transition that was taken.
-    /// If true, the creature breaks off the clip of the state that it left, and begins the new act at once. If it is on
-    /// its way, it stops abruptly, unless that act is a walk. If false, a clip that has to be played to its end was
-    /// over already, and a creature on its way comes to a stand before a new act other than a walk begins.
+    /// If true, the creature breaks off the clip of the state that it left, and begins the new act at once. If it is
+    /// walking then, it stops abruptly, unless the new act is a walk as well. If false, nothing is broken off: an act
+    /// that has to be played to its end was over, and any other act may end at any time. A walking creature then first
+    /// comes to a stand, unless the new act is a walk.
     pub interrupts: bool,
 }
 

@@ -23,9 +23,12 @@ pub struct CreatureConfig {
     pub arena: f64,
     /// Steepest slope that the creature walks onto, radians; 25 degrees by default.
     pub most_slope: f64,
-    /// Horizontal distance within which the creature sees people, metres; 150 by default.
+    /// Largest horizontal distance at which the creature sees a person, metres, from the model's origin to the middle
+    /// of the person; 150 by default. It sees only people within 103 degrees of its heading to either side, and none
+    /// behind terrain. People closer than half its width it notices wherever they are.
     pub sight: f64,
-    /// Distance within which noises are heard at full loudness, metres; 50 by default.
+    /// Distance from the eye within which noises are heard at full loudness, metres; 50 by default. Farther away they
+    /// are fainter ([`Noise::loudness`](crate::Noise::loudness)).
     pub hearing: f64,
 }
 

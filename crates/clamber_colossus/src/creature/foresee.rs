@@ -17,7 +17,8 @@ const PREDICTION_STEP: f64 = 0.1;
 /// Most steps of a prediction.
 const MOST_STEPS: f64 = 100.0;
 
-/// Memory that [`Creature::foresee`] reuses.
+/// Working memory of [`Creature::foresee`], so that it does not allocate each time. It holds no result, and may serve
+/// any creature.
 #[derive(Clone, Debug, Default)]
 pub struct Foresight {
     animator: Option<Animator>,
@@ -28,7 +29,8 @@ pub struct Foresight {
 
 impl Creature {
     /// Predicts how the creature will stand after some seconds, if its brain decides nothing new until then. Fills in
-    /// the palette and returns the creature's place in the world. `seconds` must not be negative.
+    /// `palette` with the skinning matrices, and returns the transform from model space to world space, metres.
+    /// `seconds` must not be negative.
     ///
     /// Clips and fades go on, and so does the creature along its way: it walks, turns, and slows down at its goal.
     /// Moving ground carries it on as in the last tick, in a circle if the ground turns. The prediction neither puts

@@ -191,7 +191,8 @@ impl Creature {
     }
 
     /// Finds the open weak point that a blow at a point of the skin would strike, and the unbroken plate that would
-    /// take the blow instead. Returns their indices.
+    /// take the blow instead. `at` and `place` are as for [`Creature::hurt`]. Returns their indices in
+    /// [`CreatureKind::weak_points`] and [`CreatureKind::plates`].
     pub fn struck_at(&self, at: &MaterialPoint, place: DVec3) -> (Option<usize>, Option<usize>) {
         let plate = at
             .triangle()
@@ -232,7 +233,9 @@ impl Creature {
         damage
     }
 
-    /// The remaining share of the hit points of all weak points: 0 once a major one is used up, 1 without weak points.
+    /// The hit points that all weak points together have left, as a share of those that they have when unhurt, 0 to 1.
+    /// It is 0 as soon as a major weak point ([`WeakPoint::major`](clamber_surface::rig::WeakPoint::major)) is used up,
+    /// and always 1 without weak points.
     pub fn health(&self) -> f64 {
         let points = self.kind.weak_points().iter().zip(self.state.hit_points());
         let (mut full, mut left) = (0.0, 0.0);
@@ -246,7 +249,8 @@ impl Creature {
         if full > 0.0 { left / full } else { 1.0 }
     }
 
-    /// Position of a weak point's centre, in world space, metres; `None` if there is no such weak point.
+    /// Position of a weak point's centre after the last step, in world space, metres. `index` is an index into
+    /// [`CreatureKind::weak_points`]; `None` if there is no such weak point.
     pub fn weak_point(&self, index: usize) -> Option<DVec3> {
         let point = self.kind.weak_points().get(index)?;
         let frame = self.palette.model_from_joint(point.joint)?;
@@ -254,9 +258,11 @@ impl Creature {
         Some(self.surface.world_from_model().transform_point(place))
     }
 
-    /// True if a hit would hurt a weak point now: it has hit points left, and either the current state exposes it, or
-    /// all weak points of lower order are used up, so one of the lowest order is always open. False if there is no such
-    /// weak point.
+    /// True if a weak point can be hurt now: it has hit points left, and either the current state exposes it
+    /// ([`StateFile::exposes`](crate::brain::StateFile::exposes)), or all weak points of lower order
+    /// ([`WeakPoint::order`](clamber_surface::rig::WeakPoint::order)) are used up. So a weak point of the lowest order
+    /// is open until it is used up. A plate above it does not count here, but takes hits in its place. `weak_point` is
+    /// an index into [`CreatureKind::weak_points`]; false if there is no such weak point.
     pub fn is_open(&self, weak_point: usize) -> bool {
         let points = self.kind.weak_points();
         let hit_points = self.state.hit_points();

@@ -108,7 +108,8 @@ impl Creature {
         Ok(creature)
     }
 
-    /// The kind of the creature.
+    /// The kind of the creature: the skeleton, clips, skin, weak points, plates and brain that all creatures of this
+    /// kind share.
     pub fn kind(&self) -> &Arc<CreatureKind> {
         &self.kind
     }
@@ -128,7 +129,8 @@ impl Creature {
         &self.surface
     }
 
-    /// The skin, for disabling parts of it or editing it.
+    /// The skin, for disabling parts of it, so that weapons and climbers no longer touch them, or for editing it. Each
+    /// step poses it anew. [`CreatureState`] does not save such changes.
     pub fn surface_mut(&mut self) -> &mut SkinnedSurface {
         &mut self.surface
     }

@@ -143,9 +143,10 @@ impl Creature {
         true
     }
 
-    /// Damages a weak point, open or not, by its index: for example by a fall onto a rock, or by fire. Returns the
-    /// damage done, which is at most the hit points that were left. Returns `None` and changes nothing if there is no
-    /// such weak point, or if the damage is negative or not finite.
+    /// Damages a weak point, open or not, by its index in
+    /// [`CreatureKind::weak_points`](crate::CreatureKind::weak_points): for example by a fall onto a rock, or by fire.
+    /// Returns the damage done, which is at most the hit points that were left. Returns `None` and changes nothing if
+    /// there is no such weak point, or if the damage is negative or not finite.
     pub fn harm(&mut self, weak_point: usize, damage: f64) -> Option<f64> {
         let left = *self.state.hit_points().get(weak_point)?;
         if !(0.0..=f64::MAX).contains(&damage) {

@@ -22,7 +22,8 @@ pub struct ActiveBeam {
     /// State of the brain whose attack sends the beam: the one in which the creature attacks now.
     /// [`Brain::path`](crate::Brain::path) gives its name.
     pub state: StateId,
-    /// Start of the beam at the limb's end, in world space, metres.
+    /// Start of the beam, in world space, metres: the last joint of the attack's limb
+    /// ([`Attack::limb`](crate::brain::Attack::limb)).
     pub from: DVec3,
     /// End of the beam, in world space, metres: at its full length, or at the obstacle that stops it.
     pub to: DVec3,

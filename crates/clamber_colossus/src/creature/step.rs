@@ -53,16 +53,17 @@ impl Creature {
         Ok(self.step_from_afar(around))
     }
 
-    /// Advances the creature by one tick, without its waves, shots and beam.
+    /// Advances the creature by one tick of its brain ([`Brain::tick`](crate::Brain::tick)), without its waves, shots
+    /// and beam, which [`Creature::step_from_afar`] advances.
     ///
-    /// The order is: moving ground carries the creature; it senses its surroundings at the end of the last tick; the
-    /// brain takes its step; the act of the brain's state begins or goes on; the clips advance; the creature moves; it
-    /// is posed, with feet on the ground and the head turned; the skin follows; limbs strike people. For a creature
-    /// that sleeps and is still, the step ends after the brain.
+    /// The order is: moving ground carries the creature; it senses what is around it, as it was at the end of the last
+    /// tick; the brain takes its step; the act of the brain's state begins or goes on; the clips advance; the creature
+    /// moves; it is posed, with feet on the ground and the head turned; the skin follows; limbs strike people. If the
+    /// creature sleeps ([`StateAction::Sleep`]) and has come to rest, the step ends after the brain.
     ///
     /// # Errors
     /// [`ColossusError::Surface`] if the skin cannot be posed, for example because the creature has left the range of
-    /// numbers.
+    /// numbers. A part of the step is done then.
     pub fn step_itself(&mut self, around: &Surroundings<'_>) -> Result<(), ColossusError> {
         let dt = self.kind.brain().tick();
         self.report.events.clear();

@@ -42,14 +42,16 @@ pub struct Riding {
     pub hangs: bool,
 }
 
-/// A noise that creatures hear.
+/// A noise in the world, which creatures hear through terrain and at any distance, though fainter when they are far
+/// away. Of all noises in a tick, a creature senses the one that is loudest at its eye
+/// ([`Sense::Noise`](crate::Sense::Noise)).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
     /// Source of the noise, in world space, metres.
     pub place: DVec3,
-    /// Loudness at the source, in units of the game. A creature within
-    /// [`CreatureConfig::hearing`](crate::CreatureConfig) hears it at full loudness; farther away it falls off with the
-    /// square of the distance.
+    /// Loudness at the source, in units of the game. A creature whose eye is within
+    /// [`CreatureConfig::hearing`](crate::CreatureConfig::hearing) of the source hears it at full loudness; farther
+    /// away it falls off with the square of the distance.
     pub loudness: f64,
 }
 

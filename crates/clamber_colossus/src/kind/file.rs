@@ -184,7 +184,8 @@ pub struct WeakPointFile {
     /// major one, health is 0 once all weak points are used up.
     #[serde(default, skip_serializing_if = "is_false")]
     pub major: bool,
-    /// The weak point is hidden until all weak points of lower order are used up. `None` means 0, and 1 for a major
+    /// The weak point is hidden, and cannot be hurt, until all weak points of lower order are used up, except in states
+    /// that expose it ([`StateFile::exposes`](crate::brain::StateFile::exposes)). `None` means 0, and 1 for a major
     /// one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub order: Option<u32>,
@@ -259,8 +260,10 @@ pub struct PlateFile {
     /// The plate's triangles are those with this number in `SurfaceTag::user`, which is `"user"` in a material's
     /// extras. More than 0.
     pub user: u32,
-    /// Damage to this plate since its last stagger at which it staggers again, more than 0, in the same unit as hit
-    /// points of weak points.
+    /// Damage to this plate at which it staggers, counted from 0 after each stagger: finite, more than 0, in the same
+    /// unit as hit points of weak points. A stagger is an event
+    /// ([`CreatureEvent::Staggered`](crate::CreatureEvent::Staggered)) and a sense of the brain
+    /// ([`Sense::Staggered`](crate::Sense::Staggered)); what the creature does then is up to its brain.
     pub stagger: f64,
     /// Number of this plate's own staggers after which it breaks off, at least 1.
     pub count: u32,

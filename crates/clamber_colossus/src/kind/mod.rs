@@ -298,7 +298,8 @@ impl CreatureKind {
         head.unwrap_or(DVec3::Y * (0.9 * self.height))
     }
 
-    /// The plates, in the order of the brain's file.
+    /// The plates of armour, in the order of [`BodyFile::plates`] in the brain's file. Other items refer to a plate by
+    /// its index in this list.
     pub fn plates(&self) -> &[Plate] {
         &self.plates
     }

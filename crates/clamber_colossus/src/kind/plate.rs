@@ -12,8 +12,10 @@ pub struct Plate {
     /// Name of the plate, from the brain's file, for the game. Names need not be unique: elsewhere a plate is given by
     /// its index in [`CreatureKind::plates`](crate::CreatureKind::plates).
     pub name: String,
-    /// Damage to this plate since its last stagger at which it staggers again, in the same unit as hit points of weak
-    /// points. One hit causes one stagger at most.
+    /// Damage to this plate at which it staggers, counted from 0 after each stagger, in the same unit as hit points of
+    /// weak points. Damage beyond it is lost, so one hit causes one stagger at most. A stagger is an event
+    /// ([`CreatureEvent::Staggered`](crate::CreatureEvent::Staggered)) and a sense of the brain
+    /// ([`Sense::Staggered`](crate::Sense::Staggered)).
     pub stagger: f64,
     /// Number of this plate's own staggers after which it breaks off, at least 1. The staggers of other plates do not
     /// count.

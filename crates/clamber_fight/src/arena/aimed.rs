@@ -12,13 +12,15 @@ use crate::fighter::{Around, FighterId, StabTarget};
 pub struct Aimed {
     /// The creature whose skin the stab would hit.
     pub creature: CreatureId,
-    /// The point of the creature's skin.
+    /// The point of the creature's skin that the stab would hit: a place on the skin, which moves with it.
     pub at: MaterialPoint,
     /// The point's position after the last step, in world space, metres.
     pub place: DVec3,
-    /// Index of the open weak point that a hit there would hurt.
+    /// Index in [`CreatureKind::weak_points`](clamber_colossus::CreatureKind::weak_points) of the open weak point that
+    /// a hit there would hurt; `None` without one.
     pub weak_point: Option<usize>,
-    /// Index of the unbroken plate that would take the hit instead.
+    /// Index in [`CreatureKind::plates`](clamber_colossus::CreatureKind::plates) of the unbroken plate that would take
+    /// the hit instead; `None` without one.
     pub plate: Option<usize>,
 }
 

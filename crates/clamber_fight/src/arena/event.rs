@@ -49,15 +49,17 @@ pub enum ArenaEvent {
         projectile: Option<ProjectileId>,
         /// The creature that was struck.
         creature: CreatureId,
-        /// The point of the creature's skin.
+        /// The point of the creature's skin that was struck.
         at: MaterialPoint,
         /// Position of that point at the time of the hit, in world space, metres.
         place: DVec3,
         /// Time of the hit within the tick: 0 is the tick's beginning, 1 its end.
         time: f64,
-        /// Index of the open weak point there.
+        /// Index in [`CreatureKind::weak_points`](clamber_colossus::CreatureKind::weak_points) of the open weak point
+        /// there; `None` without one.
         weak_point: Option<usize>,
-        /// Index of the unbroken plate that took the hit; weak points below it are not hurt.
+        /// Index in [`CreatureKind::plates`](clamber_colossus::CreatureKind::plates) of the unbroken plate that took
+        /// the hit, so that no weak point below it is hurt; `None` without one.
         plate: Option<usize>,
         /// Damage done to the weak point: at most the hit points that it had left, and 0 if the hit hurt no weak point.
         /// The creature reports the effect in the next step: [`CreatureEvent::Hurt`], [`CreatureEvent::Staggered`].

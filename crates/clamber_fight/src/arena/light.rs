@@ -25,7 +25,8 @@ pub struct SwordLight {
     pub origin: DVec3,
     /// The creature whose weak point the rays lead to.
     pub creature: CreatureId,
-    /// Index of the weak point.
+    /// Index of the weak point in its creature's
+    /// [`CreatureKind::weak_points`](clamber_colossus::CreatureKind::weak_points).
     pub weak_point: usize,
     /// Angle between the sword's direction and the direction to the weak point, radians.
     pub off: f64,
@@ -91,7 +92,9 @@ impl Arena {
         })
     }
 
-    /// The weak point nearest to a place among those that can be hurt now: its creature, its index and its position.
+    /// The weak point nearest to a place among those that can be hurt now: its creature, its index in
+    /// [`CreatureKind::weak_points`](clamber_colossus::CreatureKind::weak_points), and its centre in world space,
+    /// metres.
     pub fn next_weak_point(&self, from: DVec3) -> Option<(CreatureId, usize, DVec3)> {
         let open = self.creatures().flat_map(|(id, creature)| {
             let points = 0..creature.kind().weak_points().len();

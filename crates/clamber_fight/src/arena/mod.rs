@@ -216,7 +216,7 @@ impl Arena {
         self.kinds.iter().map(|(id, kind)| (*id, kind))
     }
 
-    /// The creatures, by ascending number.
+    /// The creatures, by ascending number ([`CreatureId`]).
     pub fn creatures(&self) -> impl ExactSizeIterator<Item = (CreatureId, &Creature)> + Clone {
         self.creatures.iter().map(|one| (one.id, &one.creature))
     }
@@ -231,7 +231,7 @@ impl Arena {
         CreatureId(self.next_creature)
     }
 
-    /// The fighters, by ascending number.
+    /// The fighters, by ascending number ([`FighterId`]).
     pub fn fighters(&self) -> &[Fighter] {
         &self.fighters
     }
@@ -272,8 +272,8 @@ impl Arena {
         &self.events
     }
 
-    /// Position and direction of a projectile after the last step. `None` if the obstacle that it sticks in is gone or
-    /// is not in `terrain`.
+    /// Position and direction of a projectile after the last step, whose terrain is given again. `None` if it sticks in
+    /// a creature, a part of its skin or terrain that is gone, or in terrain that `terrain` does not list.
     pub fn place(
         &self,
         projectile: &Projectile,

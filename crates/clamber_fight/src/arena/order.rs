@@ -146,7 +146,8 @@ pub enum Order {
     Harm {
         /// The creature.
         creature: CreatureId,
-        /// Index of the weak point.
+        /// Index of the weak point in its creature's
+        /// [`CreatureKind::weak_points`](clamber_colossus::CreatureKind::weak_points).
         weak_point: usize,
         /// Damage, in the unit of the weak point's hit points.
         damage: f64,

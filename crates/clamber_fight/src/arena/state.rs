@@ -13,11 +13,11 @@ pub struct ArenaState {
     pub config: u64,
     /// Number of ticks stepped so far.
     pub tick: u64,
-    /// The creatures, by ascending number.
+    /// The creatures, by ascending number ([`CreatureId`]). [`Arena::restore`] refuses any other order.
     pub creatures: Vec<SavedCreature>,
     /// The number that the next creature gets.
     pub next_creature: u32,
-    /// The fighters, by ascending number.
+    /// The fighters, by ascending number ([`FighterId`]). [`Arena::restore`] refuses any other order.
     pub fighters: Vec<SavedFighter>,
     /// The number that the next fighter gets.
     pub next_fighter: u32,

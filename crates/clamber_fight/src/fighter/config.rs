@@ -59,7 +59,8 @@ pub struct SwordConfig {
     pub strike: f64,
     /// Length of the ray by which a stab looks for skin, metres; 1.8 by default. It begins beside the climber's ball.
     pub reach: f64,
-    /// How deep the blade goes into skin, metres; 0.4 by default.
+    /// How deep the blade is in the skin while it is pulled out after a stab, for drawing it, metres; 0.4 by default,
+    /// and at most the blade's length. It changes neither the stab's reach nor its damage.
     pub depth: f64,
     /// Seconds to pull the blade out after a stab by a fighter that stands or holds on; 0.6 by default. After a stab
     /// into the air it takes as long.
@@ -85,16 +86,16 @@ pub struct BowConfig {
     pub least_draw: f64,
     /// Speed of an arrow from a fully drawn bow, metres a second; 56.4 by default. It is proportional to the draw.
     pub speed: f64,
-    /// Drag, 1/m: the deceleration is this times the square of the speed; 0 by default. An arrow of 20 g and 5.5 mm has
-    /// 0.0011.
+    /// Drag, 1/m: the deceleration is this times the square of the speed; 0 by default. An arrow of 20 g, with a shaft
+    /// of 5.5 mm in diameter, has 0.0011.
     pub drag: f64,
     /// Radius of an arrow's tip, metres; 0.005 by default.
     pub radius: f64,
     /// How deep an arrow sticks in skin or terrain, metres; 0.15 by default.
     pub depth: f64,
     /// Damage of an arrow that meets the skin at [`BowConfig::speed`], in the unit of weak points' hit points
-    /// ([`WeakPointFile::hit_points`](clamber_colossus::WeakPointFile::hit_points)); 0.05 by default. It grows with the
-    /// square of the arrow's speed relative to the skin.
+    /// ([`WeakPointFile::hit_points`](clamber_colossus::WeakPointFile::hit_points)); 0.05 by default. It is
+    /// proportional to the square of the arrow's speed relative to the skin.
     pub damage: f64,
     /// Largest angle by which an arrow strays, radians for each metre a second at which the archer moves relative to
     /// its support; 0.004 by default. An arrow never strays by more than 0.5 radians.

@@ -52,8 +52,8 @@ impl FighterFrame {
         self.rotation * DVec3::new(direction.x, direction.y, -direction.z)
     }
 
-    /// The body between this frame and `other`: this one at `share` 0, `other` at 1. The origin moves on a straight
-    /// line, the rotation on the shorter arc.
+    /// The frame between this one and `other`, for drawing between two ticks: this one at `share` 0, `other` at 1,
+    /// which is the range of `share`. The origin moves on a straight line, the rotation on the shorter arc.
     pub fn to(&self, other: &Self, share: f64) -> Self {
         Self {
             origin: self.origin + (other.origin - self.origin) * share,

@@ -102,7 +102,8 @@ impl Fighter {
         &self.report
     }
 
-    /// True from the fighter's death until it lives again.
+    /// True from the fighter's death until it lives again: by [`FighterConfig::respawn`], once there is room, or by
+    /// [`Order::Rise`](crate::Order::Rise).
     pub fn is_dead(&self) -> bool {
         self.state.dead.is_some()
     }
@@ -131,7 +132,7 @@ impl Fighter {
         }
     }
 
-    /// The fighter's complete state.
+    /// A copy of all of the fighter that changes, for saving it. Its number and configuration are not included.
     pub fn state(&self) -> FighterState {
         FighterState {
             climber: *self.climber.state(),

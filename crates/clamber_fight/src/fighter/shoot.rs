@@ -56,8 +56,8 @@ impl Fighter {
     }
 
     /// Velocity of an arrow that is released now without straying, in world space, metres a second: its speed along
-    /// `aim`, plus the fighter's own velocity. `drawn` is the draw, 0 to 1. An `aim` of zero is straight ahead. `None`
-    /// without a bow.
+    /// `aim`, plus the fighter's own velocity. `aim` is a direction in world space, of any length; zero is straight
+    /// ahead of the body ([`FighterFrame`]). `drawn` is the draw, clamped to 0 to 1. `None` without a bow.
     pub fn arrow_velocity(&self, aim: DVec3, drawn: f64) -> Option<DVec3> {
         let bow = self.config.bow.as_ref()?;
         let own = self.climber.state().velocity;

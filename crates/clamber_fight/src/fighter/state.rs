@@ -3,7 +3,7 @@ use clamber_world::{Attachment, ObstacleId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// The complete state of a fighter: a plain value.
+/// All of a fighter that changes and has to be saved: a plain value. Its number and configuration are not included.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FighterState {
     /// State of its climber: position, velocity, support, stamina and hit points.
@@ -21,7 +21,7 @@ pub struct FighterState {
     pub hit_stop: f64,
     /// Seconds since its death; `None` while it is alive.
     pub dead: Option<f64>,
-    /// Arrows left, if they are counted.
+    /// Arrows left; 0 if they are not counted ([`BowConfig::arrows`](crate::BowConfig::arrows)).
     pub arrows: u32,
     /// State of its random stream, from which the straying of arrows is drawn.
     pub random: u64,

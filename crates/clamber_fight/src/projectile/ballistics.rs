@@ -3,7 +3,7 @@ use glam::DVec3;
 /// Forces on a projectile in flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ballistics {
-    /// Gravity, metres a second squared.
+    /// Acceleration by gravity, in world space, metres a second squared.
     pub gravity: DVec3,
     /// Drag, 1/m: the deceleration is this times the square of the speed.
     pub drag: f64,

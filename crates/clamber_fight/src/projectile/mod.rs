@@ -27,7 +27,7 @@ pub struct Projectile {
     pub kind: ProjectileKind,
     /// The fighter that shot or threw it; it may have left since.
     pub by: FighterId,
-    /// Properties in flight and at a hit.
+    /// Its radius, drag, damage and other properties, which stay the same from the shot on.
     pub body: ProjectileBody,
     /// Seconds since it was shot, got stuck, or came loose, whichever was last.
     pub seconds: f64,
@@ -46,8 +46,9 @@ pub struct ProjectileBody {
     pub drag: f64,
     /// How deep its tip goes into the obstacle that it hits, metres.
     pub depth: f64,
-    /// Damage of a hit at [`ProjectileBody::speed`], in the unit of weak points' hit points; 0 for a stone. It grows
-    /// with the square of the speed relative to the struck point of the skin, which may move.
+    /// Damage of a hit at [`ProjectileBody::speed`], in the unit of weak points' hit points; 0 for a stone. It is
+    /// proportional to the square of the speed relative to the struck point of the skin, which may move, and has no
+    /// upper limit.
     pub damage: f64,
     /// Speed relative to the struck point of the skin at which it does exactly [`ProjectileBody::damage`], metres a
     /// second. At another speed the damage is multiplied by the square of the ratio.
@@ -105,7 +106,8 @@ pub struct ProjectilePlace {
     /// The tip of an arrow, or the middle of a stone, in world space, metres.
     pub tip: DVec3,
     /// Direction in which it points, in world space; a unit vector. While the projectile flies it is the direction of
-    /// its velocity, afterwards that of the arrow's shaft.
+    /// its velocity, or -Y without any; afterwards that from the arrow's rear end to its tip. A stone has no other
+    /// state than flight.
     pub direction: DVec3,
 }
 

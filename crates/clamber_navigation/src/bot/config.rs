@@ -1,6 +1,6 @@
 /// How a bot climbs: how much shake and tiredness it accepts, and when it plans anew. Shake is the acceleration of the
-/// skin under the climber ([`ClimberState::shake`](clamber_climber::ClimberState::shake)); radii are those of the
-/// climber's ball.
+/// skin under the climber, metres per second squared ([`ClimberState::shake`](clamber_climber::ClimberState::shake)).
+/// Lengths in radii are multiples of the radius of the climber's ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BotConfig {

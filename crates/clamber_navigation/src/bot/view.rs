@@ -26,7 +26,8 @@ pub enum Danger {
 /// The state of the world that a bot reads in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
-    /// The present time, seconds, by a clock that starts anywhere and goes on from tick to tick.
+    /// The present time of the simulation, seconds, by a clock that starts anywhere. It grows by the length of a tick
+    /// in each tick, and never goes back: the bot takes differences of it.
     pub seconds: f64,
     /// The climber that the bot drives.
     pub climber: &'a Climber,

@@ -21,13 +21,14 @@ pub struct Patch {
     pub barycentric: [f64; 3],
     /// The surface tag, with the material, of the skin at the middle.
     pub tag: SurfaceTag,
-    /// The patch's middle at rest, in the world, metres: a point on the skin, the one that the climber touches from
-    /// `seat`.
+    /// The patch's middle in world space, metres, on the creature in its rest pose, placed by
+    /// [`GraphConfig::world_from_model`](crate::GraphConfig::world_from_model): a point on the skin, the one that the
+    /// climber touches from `seat`.
     pub point: DVec3,
-    /// Outward unit normal at the middle, at rest.
+    /// Outward unit normal of the skin at `point`, in world space.
     pub normal: DVec3,
     /// The seat: where the centre of the climber's ball is when the climber stands or holds on at the patch's middle,
-    /// at rest, in the world, metres. It is off the skin.
+    /// off the skin. It is in world space, metres, with the creature at rest as for `point`.
     pub seat: DVec3,
     /// Area at rest, square metres.
     pub area: f64,

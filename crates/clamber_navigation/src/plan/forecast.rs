@@ -26,12 +26,12 @@ const SLICES_AHEAD: usize = 120;
 const GETS_ON: usize = 3;
 
 impl Forecast {
-    /// The forecast of a creature that keeps still.
+    /// The forecast of a creature that keeps still all the time, in pose and place: it has no clips.
     pub fn still() -> Self {
         Self::default()
     }
 
-    /// True if the creature keeps still.
+    /// True if the forecast has no clips, so that the creature counts as still, in pose and place, all the time.
     pub fn is_still(&self) -> bool {
         self.slices.is_empty()
     }

@@ -36,9 +36,9 @@ pub struct ClimbReport {
     /// The ways from the ground onto the creature: its entries, grouped so that all entries of a group reach the same
     /// skin without jumps between parts of the creature. Sorted by the area of that skin, largest first.
     pub ways_on: Vec<EntryRoute>,
-    /// The weak points, in their order in the file.
+    /// The weak points, in the order of [`Rig::weak_points`].
     pub weak_points: Vec<PointReport>,
-    /// The clips, in their order in the file.
+    /// The clips, in the order of [`Rig::clips`].
     pub clips: Vec<ClipReport>,
 }
 
@@ -47,12 +47,13 @@ pub struct ClimbReport {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct EntryRoute {
-    /// Number of entries in this group: patches onto which a climber gets from the ground ([`Entry`](crate::Entry)).
+    /// Number of entries in this group, from all of which the same skin is reached: patches onto which a climber gets
+    /// from the ground ([`Entry`](crate::Entry)).
     pub entries: usize,
-    /// The seat of the lowest of these entries at rest, in the world, metres: where the centre of the climber's ball is
-    /// there.
+    /// Where the centre of the climber's ball is on the lowest of these entries ([`Patch::seat`](crate::Patch::seat)),
+    /// in world space, metres, with the creature in its rest pose, placed by [`GraphConfig::world_from_model`].
     pub place: DVec3,
-    /// Area that is reached from them without jumps between parts of the creature, square metres.
+    /// Area of the skin that is reached from these entries without jumps between parts of the creature, square metres.
     pub area: f64,
 }
 
@@ -63,12 +64,14 @@ pub struct EntryRoute {
 pub struct PointReport {
     /// Name of the weak point.
     pub name: String,
-    /// Position of the weak point's centre at rest, in the world, metres.
+    /// Position of the weak point's centre in world space, metres, on the creature in its rest pose, placed by
+    /// [`GraphConfig::world_from_model`].
     pub place: DVec3,
     /// True if a climber with full stamina gets there from the ground on the creature at rest. Plates that cover the
     /// point are taken to be gone by then.
     pub reachable: bool,
-    /// Seconds that it takes, rests included; `None` if the point is not reachable.
+    /// Seconds from when the climber has got onto the creature until it is at the weak point, rests included, if it
+    /// starts on the ground with full stamina and takes the fastest way; `None` if the point is not reachable.
     pub seconds: Option<f64>,
     /// Stamina, 0 to 1, with which a climber arrives there if it starts on the ground with full stamina and takes the
     /// fastest way; `None` if the point is not reachable.
