@@ -171,8 +171,9 @@ impl<'a> Retarget<'a> {
             .with_ground_speed(speed)?)
     }
 
-    /// Converts a pose of the source into one of the target. Joints that are not part of the body keep the rotations of
-    /// the bind pose.
+    /// Converts a pose of the source into one of the target. Trunk, head and limbs follow the source. All other joints,
+    /// fingers among them, keep the rotations of the bind pose relative to their parents. So do collar bones, hands and
+    /// toes if the source has no such joints.
     ///
     /// # Errors
     /// [`BodyError::Rig`] if the pose does not fit the source's skeleton.

@@ -4,7 +4,8 @@ use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId};
 
 use crate::NavigationError;
 
-/// The climber of a graph, the place and state of the creature, and how finely its skin is divided.
+/// Settings of a climb graph: the climber and what it can grip; the creature's place, size, rate of clips and removable
+/// plates; the height of the ground; and how finely the skin is divided into patches.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct GraphConfig {

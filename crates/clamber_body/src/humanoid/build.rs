@@ -37,7 +37,9 @@ const FINGER_WORDS: [&str; 8] = [
 
 impl Humanoid {
     /// A body from a list of joints. It needs hips, head, upper and lower arms and legs, hands and feet. Shoulders,
-    /// chest, neck and toes are optional.
+    /// chest and toes are optional. Without a chest in the list, the chest is where the arms meet. A neck in the list
+    /// is checked but not used: the joints between the chest and the head are the neck. Fingers are found by their
+    /// names.
     ///
     /// # Errors
     /// [`BodyError::Missing`] with all missing joints, [`BodyError::NoJoint`] if the skeleton does not have a joint,

@@ -8,8 +8,12 @@ use super::{HumanJoint, Humanoid, Side};
 use crate::BodyError;
 
 impl Humanoid {
-    /// Finds the body in a skeleton by the joints' names. Two joints are found by the hierarchy alone: the hips, where
-    /// legs and spine meet, and the chest, where the arms meet.
+    /// Finds the body in a skeleton. Limbs, fingers and the head are found by the joints' names. Without a joint named
+    /// head, the topmost joint of neck or spine that carries no arm counts as the head.
+    ///
+    /// The rest is found by the hierarchy alone, whatever its names: the hips, where legs and spine meet; the chest,
+    /// where the arms meet; and the joints between hips, chest and head, which are [`Humanoid::spine`] and
+    /// [`Humanoid::neck`].
     ///
     /// # Errors
     /// [`BodyError::Missing`] with all missing joints, and the errors of [`Humanoid::from_joints`].

@@ -103,9 +103,9 @@ impl BrainState {
 
 impl Brain {
     /// Advances the brain by a tick. `passed` are the markers that clips passed in the tick. `entered` is called for
-    /// each state that is entered, at most [`MOST_TRANSITIONS`] times.
+    /// each transition that is taken, at most [`MOST_TRANSITIONS`] times.
     ///
-    /// Does nothing if the state or the senses belong to another brain.
+    /// Does nothing if the state or the senses belong to another brain, or if a sense is NaN.
     pub fn step(
         &self,
         state: &mut BrainState,

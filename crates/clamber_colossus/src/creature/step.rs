@@ -99,7 +99,9 @@ impl Creature {
         &self.report
     }
 
-    /// Sets one of the game's own senses, by its name in the file. Returns false if there is no such sense.
+    /// Sets one of the game's own senses, by its name in the file. Returns false if there is no such sense. Never set
+    /// NaN: while a sense is NaN, the brain takes no steps, and a state that is written to a file then is refused when
+    /// it is read back and restored.
     pub fn set_sense(&mut self, name: &str, value: f64) -> bool {
         let index = self
             .kind

@@ -8,7 +8,9 @@ use crate::error::{ArenaError, positive, within};
 pub struct ArenaConfig {
     /// Length of a tick, seconds; 1/60 by default. Brains have to be made for the same tick.
     pub tick: f64,
-    /// Gravity of projectiles, metres a second squared; 9.81 along -Y by default. Climbers have their own.
+    /// Gravity of the fighters' arrows and stones, in world space, metres a second squared; 9.81 along -Y by default.
+    /// Climbers have their own ([`ClimberConfig::gravity`](clamber_climber::ClimberConfig::gravity)), and so have the
+    /// shots of creatures ([`Shot::gravity`](clamber_colossus::brain::Shot::gravity)).
     pub gravity: DVec3,
     /// Direction to the sun, in world space, of any length; 45 degrees above +Z by default. It matters only for
     /// [`Arena::sword_light`](crate::Arena::sword_light), the rays of light from a fighter's sword that lead to a weak

@@ -28,9 +28,11 @@ pub struct FighterConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SwordConfig {
     /// Shoulder, from the centre of the climber's ball: right, up, and ahead of the body
-    /// ([`FighterFrame`](crate::FighterFrame)), metres.
+    /// ([`FighterFrame`](crate::FighterFrame)), metres. The arm and the blade of a cut turn about it. Stabs and the
+    /// carried sword do not depend on it.
     pub shoulder: DVec3,
-    /// Length from the shoulder to the hilt, metres; 0.6 by default.
+    /// Distance from the shoulder to the hilt in a cut, in which the arm is straight, metres; 0.6 by default. A cut
+    /// reaches this far plus the blade's length. Stabs and the carried sword do not depend on it.
     pub arm: f64,
     /// Length of the blade, metres; 1.2 by default.
     pub blade: f64,

@@ -97,7 +97,8 @@ impl Fighter {
         &self.state.act
     }
 
-    /// Events of its climber's last step, and its pushes against obstacles.
+    /// The results of its climber's last step, such as its events and its pushes against obstacles. Empty before the
+    /// first step and after a restore.
     pub fn report(&self) -> &StepReport {
         &self.report
     }

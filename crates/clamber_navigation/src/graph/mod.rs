@@ -95,10 +95,11 @@ impl ClimbGraph {
         &self.entries
     }
 
-    /// The starts of plans for a climber on the ground with some stamina, 0 to 1: all entries, with the stamina that is
-    /// left after the catch at the end of a jump
-    /// ([`StaminaConfig::catch_cost`](clamber_climber::StaminaConfig::catch_cost)). Left out are holds that hands do
-    /// not catch, because the jump passes them too fast or because stamina does not suffice.
+    /// The starts of plans for a climber that leaves the ground with some stamina, 0 to 1. Each entry gives one start
+    /// that stands, with all of this stamina, and one that holds on, with what is left after the catch at the end of
+    /// the jump ([`StaminaConfig::catch_cost`](clamber_climber::StaminaConfig::catch_cost)). Holds that hands do not
+    /// catch are left out: the jump passes them too fast, or stamina does not suffice. [`ClimbGraph::plan`] ignores
+    /// starts with a footing that their patch does not allow.
     pub fn starts_on_ground(&self, stamina: f64) -> impl Iterator<Item = Start> + '_ {
         let climber = &self.config.climber;
         let walks = climber.ground.walk_speed;
@@ -154,8 +155,9 @@ impl ClimbGraph {
             .collect()
     }
 
-    /// For each patch, whether a climber with this stamina, 0 to 1, reaches it from the ground, on the creature at
-    /// rest. The climber rests wherever it can.
+    /// For each patch, whether a climber reaches it that has this stamina, 0 to 1, when it leaves the ground. The
+    /// creature is at rest. Wherever the climber can stand, it rests until its stamina is full, whatever it began with.
+    /// It cannot rest if [`StaminaConfig::refill`](clamber_climber::StaminaConfig::refill) is 0.
     pub fn reachable_with(&self, stamina: f64) -> Vec<bool> {
         self.strength(self.starts_on_ground(stamina))
             .chunks_exact(2)

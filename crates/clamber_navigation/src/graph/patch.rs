@@ -22,8 +22,8 @@ pub struct Patch {
     /// The surface tag, with the material, of the skin at the middle.
     pub tag: SurfaceTag,
     /// The patch's middle in world space, metres, on the creature in its rest pose, placed by
-    /// [`GraphConfig::world_from_model`](crate::GraphConfig::world_from_model): a point on the skin, the one that the
-    /// climber touches from `seat`.
+    /// [`GraphConfig::world_from_model`](crate::GraphConfig::world_from_model): a point on the skin. From `seat` the
+    /// climber touches this point, except in a corner, where other skin may keep it off.
     pub point: DVec3,
     /// Outward unit normal of the skin at `point`, in world space.
     pub normal: DVec3,

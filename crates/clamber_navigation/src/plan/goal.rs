@@ -56,8 +56,9 @@ impl Goal {
         stands.min(holds)
     }
 
-    /// The least stamina with which a climber gets from a patch to the goal on a creature at rest, 0 to 1, if it rests
-    /// wherever it can; infinite if no stamina is enough. `patch` and `footing` are as for [`Goal::least_seconds`].
+    /// The least stamina, 0 to 1, that a climber has to have on a patch to get from there to the goal, on a creature at
+    /// rest; infinite if no stamina is enough. Wherever the climber can stand, it rests, if stamina refills at all.
+    /// `patch` and `footing` are as for [`Goal::least_seconds`].
     pub fn least_stamina(&self, patch: usize, footing: Footing) -> f64 {
         let least = self.of(patch, footing);
         least.map_or(f64::INFINITY, |least| least.stamina)

@@ -49,7 +49,8 @@ pub struct PlanStep {
 pub struct Plan {
     /// The steps, from the start to the goal; never empty.
     pub steps: Vec<PlanStep>,
-    /// Number of partial ways that the search has looked at.
+    /// Number of partial ways that the search has stored, starts included, whether or not it went on from them: a
+    /// measure of its work. At most two million.
     pub looked_at: usize,
 }
 
