@@ -99,9 +99,8 @@ impl Creature {
         &self.report
     }
 
-    /// Sets one of the game's own senses, by its name in the file. Returns false if there is no such sense. Never set
-    /// NaN: while a sense is NaN, the brain takes no steps, and a state that is written to a file then is refused when
-    /// it is read back and restored.
+    /// Sets one of the game's own senses, by its name in the file. Returns false and changes nothing if there is no such
+    /// sense, or if the value is not finite.
     pub fn set_sense(&mut self, name: &str, value: f64) -> bool {
         let index = self
             .kind
@@ -109,10 +108,11 @@ impl Creature {
             .own_senses()
             .iter()
             .position(|known| known == name);
-        if let Some(index) = index {
-            self.state.senses.set_own(index, value);
-        }
-        index.is_some()
+        let Some(index) = index.filter(|_| value.is_finite()) else {
+            return false;
+        };
+        self.state.senses.set_own(index, value);
+        true
     }
 
     /// True if the current act is to sleep.

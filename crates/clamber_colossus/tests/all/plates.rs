@@ -24,6 +24,7 @@ const CELLS: u32 = 32;
 /// A brain whose plate staggers the creature at a damage of 2 and breaks after three staggers, as JSON.
 const BRAIN: &str = r#"{
   "body": { "plates": [{ "name": "shell", "user": 7, "stagger": 2, "count": 3 }] },
+  "senses": ["storm"],
   "start": "lies",
   "states": {
     "lies": { "transitions": [{ "to": "reels", "when": ["staggered"] }] },
@@ -164,6 +165,19 @@ fn kinds_with_other_plates_are_told_apart() {
     let kind = |rows| slab_with_plate(rows).kind().fingerprint();
     assert_eq!(kind(CELLS), kind(CELLS));
     assert_ne!(kind(CELLS), kind(CELLS - 1));
+}
+
+#[test]
+fn a_sense_that_is_not_finite_is_refused_and_changes_nothing() {
+    let mut slab = slab();
+    assert!(slab.set_sense("storm", 3.0));
+    let before = slab.state().clone();
+    for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert!(!slab.set_sense("storm", wrong));
+    }
+    assert!(!slab.set_sense("rain", 1.0));
+    assert_eq!(*slab.state(), before);
+    slab.restore(before).unwrap();
 }
 
 #[test]
