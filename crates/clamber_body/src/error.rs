@@ -67,7 +67,8 @@ pub enum BodyError {
     /// The time since the last frame is negative, or not finite.
     #[error("the time since the last frame is {0} s; it must be finite and not negative")]
     Time(f64),
-    /// The body was made for another figure.
+    /// The body was made for another figure, with another number of joints. Figures with equally many joints are not
+    /// told apart.
     #[error("the body has {body} joints, the figure {figure}")]
     OtherFigure {
         /// Joints of the body.

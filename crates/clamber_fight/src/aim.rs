@@ -5,8 +5,9 @@ use glam::DVec3;
 /// How to shoot an arrow so that it meets a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lead {
-    /// Launch velocity in world space, metres a second. Its length is the arrow's speed. A moving fighter adds its own
-    /// velocity to its arrow: give [`lead`] the target's velocity relative to the fighter.
+    /// Launch velocity relative to the fighter, along the axes of world space, metres a second. Its direction is the
+    /// aim, its length the `speed` that [`lead`] was given. Do not add the fighter's own velocity to it: the shot does
+    /// so itself ([`Fighter::arrow_velocity`](crate::Fighter::arrow_velocity)).
     pub velocity: DVec3,
     /// Seconds until the arrow meets the target.
     pub seconds: f64,
@@ -16,9 +17,10 @@ pub struct Lead {
 /// possible arcs. `None` if the target is out of reach or already at `from`, if the speed is not positive, or if a
 /// number is not finite.
 ///
-/// `from` is where the arrow leaves, `target` the target's position now, `velocity` the target's constant velocity,
-/// less the fighter's own if that moves, and `speed` the arrow's speed relative to the fighter. Positions are in world
-/// space, metres, velocities in metres a second, gravity in metres a second squared. With drag an arrow falls short.
+/// `from` is where the arrow leaves, `target` the target's position now, and `speed` the arrow's speed relative to the
+/// fighter. `velocity` is the target's velocity, which counts as constant, minus the fighter's own velocity, which a
+/// shot adds to the arrow's. Positions are in world space, metres, velocities in metres a second, gravity in metres a
+/// second squared. With drag an arrow falls short.
 ///
 /// The arrow and the target can meet at the positive roots of `|g|^2 t^4 / 4 - (w.g) t^3 + (|w|^2 - d.g - s^2) t^2 + 2
 /// (d.w) t + |d|^2`, where d is the vector from `from` to the target, w its velocity, g gravity and s the speed. The

@@ -23,11 +23,11 @@ pub enum Stage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// The stage that the build is in.
+    /// The stage that the build of the graph is in.
     pub stage: Stage,
-    /// Number of steps of this stage that are done.
+    /// Number of steps that the build has done in `stage`. It begins at 0 again in each stage.
     pub done: usize,
-    /// Number of all steps of this stage, the ones that are done included.
+    /// Number of all steps of the build in `stage`: those that are done and those that are left.
     pub of: usize,
 }
 

@@ -67,9 +67,10 @@ impl Body {
     /// climber begins another motion.
     ///
     /// # Errors
-    /// [`BodyError`] for numbers that are not finite, a body of another figure, or limbs that cannot be posed, such as
-    /// those that a clip scales to nothing. The body keeps its place. If a limb cannot be posed, the clips' pose
-    /// remains, with some limbs bent already.
+    /// [`BodyError`] for numbers that are not finite, a negative `dt`, or a figure with another number of joints than
+    /// the body's own: nothing changes then. Also for limbs or a head that cannot be posed, such as a limb that a clip
+    /// scales to nothing: [`Body::world_from_model`] and [`Body::hold`] stay as after the last update then, but the
+    /// clips have advanced, and [`Body::pose`] is their pose, with some limbs bent already.
     pub fn update(
         &mut self,
         figure: &Figure,

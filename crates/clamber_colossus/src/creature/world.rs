@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 /// itself.
 #[derive(Clone, Copy, Default)]
 pub struct Surroundings<'a> {
-    /// The obstacles of the world, such as ground, walls and rocks. The creature walks on them and goes round those in
-    /// its way. It cannot see through them, and its attacks do not pass through them.
+    /// The obstacles of the world except creatures: ground, walls, rocks, and things that move, such as ships and
+    /// lifts. The creature walks on them and goes round those in its way. Ground that moves carries it along. It cannot
+    /// see through terrain, and its attacks do not pass through it.
     pub terrain: &'a [&'a dyn Obstacle],
     /// Skins of the other creatures. They block the creature's way and its attacks, except waves, as terrain does. But
     /// they are no ground to walk on, and the creature sees through them.

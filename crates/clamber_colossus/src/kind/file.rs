@@ -234,8 +234,8 @@ pub struct GaitFile {
     /// fast the creature moves meanwhile.
     pub walk: String,
     /// Speed over ground: how far it walks in a second of the clip, in heights of the creature, so that neither its
-    /// size nor the unit of its file matters. `None` takes the speed in the clip's extras, or without one the speed of
-    /// the feet while they stand in the clip.
+    /// size nor the unit of its file matters. `None` takes the clip's own speed (in a glTF file the key `speed` in the
+    /// object `clamber` of the animation's extras), or without one the speed of the feet while they stand in the clip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
     /// Clips of turning on the spot to the left and to the right. `None` turns with the idle clip, and the feet follow
@@ -257,11 +257,13 @@ pub struct GaitFile {
 pub struct PlateFile {
     /// Name of the plate, for the game.
     pub name: String,
-    /// The plate's triangles are those with this number in `SurfaceTag::user`, which is `"user"` in a material's
-    /// extras. More than 0.
+    /// The plate's triangles are those with this number in `SurfaceTag::user`, more than 0. In a glTF file the number
+    /// is the key `user` in the object `clamber` of a material's extras: `{"clamber": {"user": 7}}`.
     pub user: u32,
-    /// Damage to this plate at which it staggers, counted from 0 after each stagger: finite, more than 0, in the same
-    /// unit as hit points of weak points. A stagger is an event
+    /// Damage at which the plate staggers: finite, more than 0, in the same unit as hit points of weak points. The
+    /// damage of all hits on the plate adds up. When the sum reaches this number, the plate staggers, and the sum
+    /// begins at 0 again. What the last hit did beyond this number does not count towards the next stagger, so one hit
+    /// causes one stagger at most. A stagger is an event
     /// ([`CreatureEvent::Staggered`](crate::CreatureEvent::Staggered)) and a sense of the brain
     /// ([`Sense::Staggered`](crate::Sense::Staggered)); what the creature does then is up to its brain.
     pub stagger: f64,

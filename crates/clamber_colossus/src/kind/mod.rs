@@ -304,7 +304,8 @@ impl CreatureKind {
         &self.plates
     }
 
-    /// The index of the plate that a triangle belongs to.
+    /// The index in [`CreatureKind::plates`] of the plate that a triangle belongs to, whether or not a creature has
+    /// lost that plate. `None` if the triangle belongs to no plate.
     pub fn plate_of(&self, triangle: TriangleId) -> Option<usize> {
         let found = self
             .plate_of

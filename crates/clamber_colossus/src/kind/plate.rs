@@ -12,10 +12,11 @@ pub struct Plate {
     /// Name of the plate, from the brain's file, for the game. Names need not be unique: elsewhere a plate is given by
     /// its index in [`CreatureKind::plates`](crate::CreatureKind::plates).
     pub name: String,
-    /// Damage to this plate at which it staggers, counted from 0 after each stagger, in the same unit as hit points of
-    /// weak points. Damage beyond it is lost, so one hit causes one stagger at most. A stagger is an event
-    /// ([`CreatureEvent::Staggered`](crate::CreatureEvent::Staggered)) and a sense of the brain
-    /// ([`Sense::Staggered`](crate::Sense::Staggered)).
+    /// Damage at which the plate staggers, in the same unit as hit points of weak points. The damage of all hits on the
+    /// plate adds up. When the sum reaches this number, the plate staggers, and the sum begins at 0 again. What the
+    /// last hit did beyond this number does not count towards the next stagger, so one hit causes one stagger at most.
+    /// A stagger is an event ([`CreatureEvent::Staggered`](crate::CreatureEvent::Staggered)) and a sense of the brain
+    /// ([`Sense::Staggered`](crate::Sense::Staggered)); what the creature does then is up to its brain.
     pub stagger: f64,
     /// Number of this plate's own staggers after which it breaks off, at least 1. The staggers of other plates do not
     /// count.

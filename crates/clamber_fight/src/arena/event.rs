@@ -51,7 +51,7 @@ pub enum ArenaEvent {
         creature: CreatureId,
         /// The point of the creature's skin that was struck.
         at: MaterialPoint,
-        /// Position of that point at the time of the hit, in world space, metres.
+        /// Position of the struck point `at` at the time of the hit, in world space, metres.
         place: DVec3,
         /// Time of the hit within the tick: 0 is the tick's beginning, 1 its end.
         time: f64,

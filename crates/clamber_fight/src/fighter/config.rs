@@ -86,7 +86,8 @@ pub struct BowConfig {
     /// Smallest share of a full draw, 0 to 1, at which the bow shoots; 0.2 by default. If the button is released
     /// sooner, no arrow leaves.
     pub least_draw: f64,
-    /// Speed of an arrow from a fully drawn bow, metres a second; 56.4 by default. It is proportional to the draw.
+    /// Speed of an arrow from a fully drawn bow when it is released, relative to the fighter, metres a second; 56.4 by
+    /// default. It is proportional to the draw.
     pub speed: f64,
     /// Drag, 1/m: the deceleration is this times the square of the speed; 0 by default. An arrow of 20 g, with a shaft
     /// of 5.5 mm in diameter, has 0.0011.

@@ -15,10 +15,11 @@ use crate::survey::Survey;
 pub struct Entry {
     /// The patch that the climber gets onto: an index into [`ClimbGraph::patches`](crate::ClimbGraph::patches).
     pub patch: usize,
-    /// Height of the middle of the climber's ball there, above the ground, metres.
+    /// Height above the ground of the middle of the climber's ball on `patch`, metres: at the lowest place of the patch
+    /// that it gets onto from the ground.
     pub height: f64,
-    /// The largest speed at which the climber's hands pass this place in a jump from the ground at walking speed,
-    /// metres per second. 0 if they reach it from the ground without a jump.
+    /// The largest speed at which the climber's hands pass that lowest place in a jump from the ground at walking
+    /// speed, metres per second. 0 if they reach it from the ground without a jump.
     pub speed: f64,
 }
 

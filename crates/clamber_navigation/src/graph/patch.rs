@@ -25,7 +25,7 @@ pub struct Patch {
     /// [`GraphConfig::world_from_model`](crate::GraphConfig::world_from_model): a point on the skin. From `seat` the
     /// climber touches this point, except in a corner, where other skin may keep it off.
     pub point: DVec3,
-    /// Outward unit normal of the skin at `point`, in world space.
+    /// Outward unit normal of the skin at `point`, in world space, with the creature at rest as for `point`.
     pub normal: DVec3,
     /// The seat: where the centre of the climber's ball is when the climber stands or holds on at the patch's middle,
     /// off the skin. It is in world space, metres, with the creature at rest as for `point`.

@@ -18,11 +18,12 @@ use crate::{ClimbGraph, Footing};
 pub struct Start {
     /// The patch on which the plan begins: an index into [`ClimbGraph::patches`].
     pub patch: usize,
-    /// Whether the climber stands or holds on at that patch.
+    /// Whether the climber stands or holds on at `patch`, on which the plan begins.
     pub footing: Footing,
-    /// Seconds from the beginning of the plan until the climber is on that patch; 0 if it is there already.
+    /// Seconds from the beginning of the plan until the climber is on `patch`; 0 if it is there already.
     pub seconds: f64,
-    /// Stamina that the climber has when it is on that patch, 0 to 1. If it has yet to get there, what is left then.
+    /// Stamina that the climber has when it is on `patch`, 0 to 1. If it has yet to get there, the stamina that it will
+    /// have left on arrival.
     pub stamina: f64,
 }
 
@@ -32,12 +33,12 @@ pub struct Start {
 pub struct PlanStep {
     /// The patch to which the step leads: an index into [`ClimbGraph::patches`].
     pub patch: usize,
-    /// Whether the climber stands or holds on at that patch.
+    /// Whether the climber stands or holds on at `patch`, to which the step leads.
     pub footing: Footing,
-    /// Time of arrival on the patch, seconds after the beginning of the plan. If the step before has the same patch and
+    /// Time of arrival on `patch`, seconds after the beginning of the plan. If the step before has the same patch and
     /// footing, the time until which the climber rests there.
     pub seconds: f64,
-    /// The climber's stamina at that time, 0 to 1.
+    /// The climber's stamina at the time `seconds`, 0 to 1.
     pub stamina: f64,
     /// True if the climber comes from the step before by a jump.
     pub jumps: bool,

@@ -71,10 +71,11 @@ pub struct PointReport {
     /// point are taken to be gone by then.
     pub reachable: bool,
     /// Seconds from when the climber has got onto the creature until it is at the weak point, rests included, if it
-    /// starts on the ground with full stamina and takes the fastest way; `None` if the point is not reachable.
+    /// starts on the ground with full stamina and takes the fastest way, with the creature at rest; `None` if
+    /// `reachable` is false.
     pub seconds: Option<f64>,
-    /// Stamina, 0 to 1, with which a climber arrives there if it starts on the ground with full stamina and takes the
-    /// fastest way; `None` if the point is not reachable.
+    /// Stamina, 0 to 1, with which a climber arrives at the weak point if it starts on the ground with full stamina and
+    /// takes the fastest way, with the creature at rest; `None` if `reachable` is false.
     pub stamina: Option<f64>,
     /// The reason if the point is not reachable; `None` if it is.
     pub missing: Option<Missing>,
