@@ -123,7 +123,7 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let between = options.between.as_deref();
     if between.is_some_and(|part| part[0] >= part[1]) {
-        return Err("--between ends before it begins".into());
+        return Err("--between has to end after it begins".into());
     }
     let (figure, rig) = figure(options.figure.as_deref())?;
     std::fs::create_dir_all(&options.out)?;

@@ -98,7 +98,7 @@ impl Controller {
             ..Path::new(BODY, self.position, target)
         };
         let moved = mover.slide(&path);
-        self.deepest = self.deepest.max(moved.penetration);
+        self.deepest = larger(self.deepest, moved.penetration);
         self.position = moved.position;
         self.velocity = mover.clip_velocity(self.base + walk, self.base, None);
         if walk == DVec3::ZERO {
@@ -127,7 +127,7 @@ impl Controller {
             ..Path::new(BODY, self.position, target)
         };
         let moved = mover.slide(&path);
-        self.deepest = self.deepest.max(moved.penetration);
+        self.deepest = larger(self.deepest, moved.penetration);
         self.position = moved.position;
         let falling = self.velocity + change;
         self.velocity = mover.clip_velocity(falling, self.base, None);
@@ -153,6 +153,11 @@ fn probe(reach: f64) -> GroundProbe {
         max_slope: MAX_SLOPE,
         reach,
     }
+}
+
+/// The larger of two numbers; NaN if one of them is NaN, which `f64::max` ignores.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -194,7 +199,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             } else if tick < JUMP_TICK {
                 // Only before the jump: the player then lands in a fold of the shoulder, which may push it by
                 // millimetres.
-                drift = drift.max(went);
+                drift = larger(drift, went);
             }
         }
         // The height of the jump, relative to the motion of the skin that the player left.
@@ -203,7 +208,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         if tick >= JUMP_TICK && player.ground.is_none() {
             let left = jump_from + player.base * (f64::from(tick - JUMP_TICK + 1) * DT);
-            jump_height = jump_height.max((player.position - left).y);
+            jump_height = larger(jump_height, (player.position - left).y);
         }
         let skin_is: &dyn Obstacle = &skin;
         let closest = skin_is

@@ -7,6 +7,7 @@ use std::fmt;
 
 use clamber::prelude::*;
 use clamber::world::rapier3d::prelude::*;
+use clamber_scenes::measure::larger;
 use clamber_scenes::{solid_angle, valley};
 use glam::DVec3;
 
@@ -49,7 +50,7 @@ impl Outcome {
                 scene.surface.mesh(),
                 root.inverse_transform_point(place),
             );
-            let under = place.y < valley::height(place.x, place.z);
+            let under = !place.is_finite() || place.y < valley::height(place.x, place.z);
             self.tunnelled += usize::from(inside || under);
         }
     }
@@ -64,7 +65,8 @@ impl Outcome {
             let skin = scene.surface.closest_point(place, PILE);
             self.on_ground += usize::from(high < PILE);
             self.on_giant += usize::from(high >= PILE && skin.is_some());
-            self.deepest = self.deepest.max(depth(&scene.surface, &scene.world, *rock));
+            let depth = depth(&scene.surface, &scene.world, *rock);
+            self.deepest = larger(self.deepest, depth);
         }
     }
 }
@@ -109,7 +111,7 @@ fn depth(surface: &SkinnedSurface, world: &PhysicsWorld, body: RigidBodyHandle) 
         let nearest = collider.shape().project_local_point(local, false);
         if nearest.is_inside {
             let out = f64::from((nearest.point - local).length());
-            deepest = deepest.max(out);
+            deepest = larger(deepest, out);
         }
     }
     let Some(support) = collider.shape().as_support_map() else {
@@ -132,7 +134,7 @@ fn depth(surface: &SkinnedSurface, world: &PhysicsWorld, body: RigidBodyHandle) 
             if let Some(near) = near
                 && solid_angle::is_inside(&positions, mesh, in_model)
             {
-                deepest = deepest.max(near.distance * root.scale);
+                deepest = larger(deepest, near.distance * root.scale);
             }
         }
     }

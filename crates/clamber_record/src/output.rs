@@ -54,8 +54,10 @@ pub(crate) struct Output<W: Write> {
     pub(crate) now: u64,
     /// Bytes in the current chunk, with [`MORE`] for each message.
     chunk: u64,
-    /// Buffer of the encoded message, kept so that its memory is reused.
+    /// The encoded messages of the current tick, kept so that their memory is reused.
     buffer: Vec<u8>,
+    /// Channel and end in `buffer` of each message of the current tick.
+    messages: Vec<(u16, usize)>,
     pub(crate) scene: Channel,
     transforms: Channel,
     scenery: Channel,
@@ -144,6 +146,7 @@ impl<W: Write> Output<W> {
             now: 0,
             chunk: 0,
             buffer: Vec::new(),
+            messages: Vec::new(),
             skin_points,
             positions: Vec::new(),
             meshes: Sceneries::default(),
@@ -168,7 +171,12 @@ impl<W: Write> Output<W> {
     ) -> Result<W, RecordError> {
         for (ticks, lost) in chunks {
             for taken in ticks {
-                self.tick(taken, &mut encode)?;
+                if let Err(error) = self.tick(taken, &mut encode) {
+                    // The ticks before this one are kept, and nothing of this one. The first error tells the cause.
+                    let _ = self.flush();
+                    return Err(error);
+                }
+                self.add_to_chunk()?;
                 if self.chunk > LARGE {
                     self.flush()?;
                 }
@@ -177,6 +185,7 @@ impl<W: Write> Output<W> {
             // Readers learn from the metadata how many ticks are missing at the end.
             if let Some(line) = gap_line(lost) {
                 self.log(line)?;
+                self.add_to_chunk()?;
                 let metadata = Entries::from([(GAP_TICKS.to_owned(), lost.to_string())]);
                 let name = GAP.to_owned();
                 self.writer()?
@@ -191,6 +200,7 @@ impl<W: Write> Output<W> {
         Ok(out)
     }
 
+    /// Sends the messages of a tick.
     fn tick<D>(
         &mut self,
         taken: Taken<D>,
@@ -203,14 +213,8 @@ impl<W: Write> Output<W> {
                 state: state.into(),
             })
         });
-        let states: Vec<Saved> = match states.collect::<Result<_, String>>() {
-            Ok(states) => states,
-            Err(reason) => {
-                // The ticks before this one are kept.
-                self.flush()?;
-                return Err(RecordError::encode(self.saved.topic, reason));
-            }
-        };
+        let states = states.collect::<Result<Vec<Saved>, String>>();
+        let states = states.map_err(|reason| RecordError::encode(self.saved.topic, reason))?;
         self.sequence = self.sequence.wrapping_add(1);
         self.now = (tick as f64 * self.tick_seconds * 1e9).round() as u64;
         encode(taken.data, self)?;
@@ -251,27 +255,39 @@ impl<W: Write> Output<W> {
         self.send_as(channel, |buffer| message.encode(buffer))
     }
 
-    /// Sends a message that `encode` appends to a buffer.
+    /// Sends a message that `encode` appends to a buffer. [`Output::add_to_chunk`] writes it.
     fn send_as<E: ToString>(
         &mut self,
         channel: Channel,
         encode: impl FnOnce(&mut Vec<u8>) -> Result<(), E>,
     ) -> Result<(), RecordError> {
-        self.buffer.clear();
+        let start = self.buffer.len();
         encode(&mut self.buffer).map_err(|error| RecordError::encode(channel.topic, error))?;
-        self.chunk += self.buffer.len() as u64 + MORE;
+        self.chunk += (self.buffer.len() - start) as u64 + MORE;
         if self.chunk > LARGEST - MORE {
             let reason = "a tick takes more than 512 MiB, which no reader takes";
             return Err(RecordError::encode(channel.topic, reason));
         }
-        let header = MessageHeader {
-            channel_id: channel.id,
-            sequence: self.sequence,
-            log_time: self.now,
-            publish_time: self.now,
-        };
+        self.messages.push((channel.id, self.buffer.len()));
+        Ok(())
+    }
+
+    /// Adds the messages that were sent to the current chunk: those of a whole tick, so that none is written in part.
+    fn add_to_chunk(&mut self) -> Result<(), RecordError> {
         let writer = self.writer.as_mut().ok_or(RecordError::Ended)?;
-        Ok(writer.write_to_known_channel(&header, &self.buffer)?)
+        let mut start = 0;
+        for (channel_id, end) in self.messages.drain(..) {
+            let header = MessageHeader {
+                channel_id,
+                sequence: self.sequence,
+                log_time: self.now,
+                publish_time: self.now,
+            };
+            writer.write_to_known_channel(&header, &self.buffer[start..end])?;
+            start = end;
+        }
+        self.buffer.clear();
+        Ok(())
     }
 
     /// Sends a log line at the time of the tick that was begun last.
@@ -297,7 +313,7 @@ impl<W: Write> Output<W> {
     }
 
     /// Ends the current chunk.
-    pub(crate) fn flush(&mut self) -> Result<(), RecordError> {
+    fn flush(&mut self) -> Result<(), RecordError> {
         self.chunk = 0;
         Ok(self.writer()?.flush()?)
     }

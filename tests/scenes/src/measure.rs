@@ -14,6 +14,11 @@ pub fn is_brief() -> bool {
     !passed("--bench") || passed("--test")
 }
 
+/// The larger of two numbers; NaN if one of them is NaN, which `f64::max` ignores.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
 /// The exit code of a bench or an example. Prints the error of one that failed.
 pub fn exit_code(result: Result<(), Box<dyn Error>>) -> ExitCode {
     let Err(error) = result else {
@@ -257,6 +262,12 @@ impl fmt::Display for Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_larger_of_nan_and_a_number_is_nan() {
+        assert_eq!([larger(1.0, 2.0), larger(2.0, 1.0)], [2.0; 2]);
+        assert!(larger(f64::NAN, 1.0).is_nan() && larger(1.0, f64::NAN).is_nan());
+    }
 
     #[test]
     fn quantiles_of_few_values() {

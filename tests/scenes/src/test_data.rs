@@ -54,24 +54,36 @@ const GLTF: [&str; 2] = ["glb", "gltf"];
 pub fn files_in(folder: &Path, extensions: &[&str]) -> std::io::Result<Vec<PathBuf>> {
     let (mut files, mut folders) = (Vec::new(), vec![folder.to_owned()]);
     while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder)? {
-            let path = entry?.path();
-            let ends = |end: &&str| path.extension().is_some_and(|found| found == *end);
-            if path.is_dir() {
-                folders.push(path);
-            } else if extensions.iter().any(ends) {
-                files.push(path);
-            }
-        }
+        folders.extend(read_folder(&folder, extensions, &mut files)?);
     }
     files.sort();
     Ok(files)
 }
 
+/// Adds the files of a folder that have one of these extensions. Returns the folders in it.
+fn read_folder(
+    folder: &Path,
+    extensions: &[&str],
+    files: &mut Vec<PathBuf>,
+) -> std::io::Result<Vec<PathBuf>> {
+    let mut folders = Vec::new();
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        let ends = |end: &&str| path.extension().is_some_and(|found| found == *end);
+        if path.is_dir() {
+            folders.push(path);
+        } else if extensions.iter().any(ends) {
+            files.push(path);
+        }
+    }
+    Ok(folders)
+}
+
 /// The models of a folder, but not of the folders in it, sorted.
 pub fn models_in(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
-    let mut files = files_in(folder, &GLTF)?;
-    files.retain(|file| file.parent() == Some(folder));
+    let mut files = Vec::new();
+    read_folder(folder, &GLTF, &mut files)?;
+    files.sort();
     Ok(files)
 }
 
@@ -104,7 +116,8 @@ const FIVE_MODELS: [&str; 5] = [
     "George.glb",
 ];
 
-/// Five creatures for measurements. If `CLAMBER_TEST_DATA` is not set, prints that `test` was skipped, and returns none.
+/// Five creatures for measurements. If `CLAMBER_TEST_DATA` is not set, prints that `test` was skipped, and returns
+/// none.
 ///
 /// # Panics
 /// As [`file()`].
@@ -113,7 +126,8 @@ pub fn five_creatures(test: &str) -> Result<Vec<Creature>, SceneError> {
     paths.map(|path| Creature::load(&path)).collect()
 }
 
-/// The files of [`five_creatures`]. If `CLAMBER_TEST_DATA` is not set, prints that `test` was skipped, and returns none.
+/// The files of [`five_creatures`]. If `CLAMBER_TEST_DATA` is not set, prints that `test` was skipped, and returns
+/// none.
 ///
 /// # Panics
 /// As [`file()`].

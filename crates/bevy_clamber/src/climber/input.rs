@@ -57,7 +57,8 @@ pub struct ClimberBlow {
 }
 
 impl ClimberInput {
-    /// Strikes the climber in the next tick. Several blows before it add up; the last one's dealer counts.
+    /// Strikes the climber in the next tick. Several blows before it add up; the last dealer that is known counts. If
+    /// one of them is out of range, none has an effect.
     ///
     /// An arena ignores blows in the input of its fighters: there, the game gives an `Order::Strike` by
     /// `FightArena::order`.
@@ -70,7 +71,7 @@ impl ClimberInput {
 fn sum(earlier: Option<ClimberBlow>, later: ClimberBlow) -> ClimberBlow {
     earlier.map_or(later, |earlier| {
         let damages = [earlier.damage, later.damage];
-        // The climber refuses NaN, as it would have refused the wrong one of both.
+        // The climber refuses NaN, as it would have refused the one that is out of range.
         let are_sane = damages.iter().all(|damage| (0.0..=1.0).contains(damage));
         let sum = if are_sane {
             damages.iter().sum::<f32>().min(1.0)

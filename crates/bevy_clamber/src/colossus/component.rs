@@ -93,8 +93,8 @@ impl ColossusBody {
         })
     }
 
-    /// Sets one of the game's own senses, by its name in the brain's file. Returns false and changes nothing if there is
-    /// no such sense, or if the value is not finite.
+    /// Sets one of the game's own senses, by its name in the brain's file. Returns false and changes nothing if there
+    /// is no such sense, or if the value is not finite.
     pub fn set_sense(&mut self, name: &str, value: f64) -> bool {
         self.creature.set_sense(name, value)
     }

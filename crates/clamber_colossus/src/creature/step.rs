@@ -99,8 +99,8 @@ impl Creature {
         &self.report
     }
 
-    /// Sets one of the game's own senses, by its name in the file. Returns false and changes nothing if there is no such
-    /// sense, or if the value is not finite.
+    /// Sets one of the game's own senses, by its name in the file. Returns false and changes nothing if there is no
+    /// such sense, or if the value is not finite.
     pub fn set_sense(&mut self, name: &str, value: f64) -> bool {
         let index = self
             .kind

@@ -28,23 +28,37 @@ impl Arena {
     /// A 64-bit hash of everything that [`Arena::save`] saves, except the hash of the configuration. For comparing runs
     /// and peers; not for hash tables.
     pub fn fingerprint(&self) -> u64 {
-        let mut hash = [Fingerprint::default()];
-        self.take_counters(&mut hash);
-        for one in &self.creatures {
-            take_creature(&mut hash, one.mark, one.creature.state());
-        }
-        for fighter in &self.fighters {
-            let climber = fighter.climber().state();
-            take_fighter(&mut hash, fighter.mark(), climber, fighter.rest());
-        }
-        self.take_last(&mut hash);
-        let [hash] = hash;
-        hash.value()
+        alone(|hash| {
+            self.take_counters(hash);
+            for one in &self.creatures {
+                take_creature(hash, one.mark, one.creature.state());
+            }
+            for fighter in &self.fighters {
+                let climber = fighter.climber().state();
+                take_fighter(hash, fighter.mark(), climber, fighter.rest());
+            }
+            self.take_last(hash);
+        })
     }
 
     /// Hashes of the single parts, to find the parts that differ: each creature, then each fighter, then the rest.
     pub fn part_fingerprints(&self) -> Vec<(ArenaPart, u64)> {
-        self.fingerprints().1
+        let creatures = self.creatures.iter().map(|one| {
+            let state = one.creature.state();
+            let hash = alone(|hash| take_creature(hash, one.mark, state));
+            (ArenaPart::Creature(one.id), hash)
+        });
+        let fighters = self.fighters.iter().map(|fighter| {
+            let climber = fighter.climber().state();
+            let hash = alone(|hash| take_fighter(hash, fighter.mark(), climber, fighter.rest()));
+            (ArenaPart::Fighter(fighter.id()), hash)
+        });
+        let rest = alone(|hash| {
+            self.take_counters(hash);
+            self.take_last(hash);
+        });
+        let rest = [(ArenaPart::Rest, rest)];
+        creatures.chain(fighters).chain(rest).collect()
     }
 
     /// [`Arena::fingerprint`] and [`Arena::part_fingerprints`], in one pass over the state.
@@ -88,21 +102,28 @@ impl Arena {
 impl ArenaState {
     /// The same hash as [`Arena::fingerprint`] of the arena from which this state was saved.
     pub fn fingerprint(&self) -> u64 {
-        let mut hash = [Fingerprint::default()];
-        let next = (self.next_creature, self.next_fighter, self.next_projectile);
-        take(&mut hash, &(self.tick, next));
-        for one in &self.creatures {
-            let mark = mark(one.id, one.kind, &one.config);
-            take_creature(&mut hash, mark, &one.state);
-        }
-        for one in &self.fighters {
-            let mark = fighter_mark(one.id, &one.config);
-            take_fighter(&mut hash, mark, &one.state.climber, &one.state);
-        }
-        take(&mut hash, &(&self.projectiles, &self.noises));
-        let [hash] = hash;
-        hash.value()
+        alone(|hash| {
+            let next = (self.next_creature, self.next_fighter, self.next_projectile);
+            take(hash, &(self.tick, next));
+            for one in &self.creatures {
+                let mark = mark(one.id, one.kind, &one.config);
+                take_creature(hash, mark, &one.state);
+            }
+            for one in &self.fighters {
+                let mark = fighter_mark(one.id, &one.config);
+                take_fighter(hash, mark, &one.state.climber, &one.state);
+            }
+            take(hash, &(&self.projectiles, &self.noises));
+        })
     }
+}
+
+/// The hash of what `add` adds to it.
+fn alone(add: impl FnOnce(&mut [Fingerprint; 1])) -> u64 {
+    let mut hash = [Fingerprint::default()];
+    add(&mut hash);
+    let [hash] = hash;
+    hash.value()
 }
 
 fn take_creature<const N: usize>(hashes: &mut [Fingerprint; N], mark: u64, state: &CreatureState) {

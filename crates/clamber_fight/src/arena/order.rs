@@ -450,8 +450,9 @@ impl Arena {
                 self.events.extend(rose);
             }
             Order::AddArrows { arrows, .. } => {
-                let has = one.rest().arrows;
-                one.rest_mut().arrows = has.saturating_add(*arrows);
+                if let Some(has) = one.arrows() {
+                    one.rest_mut().arrows = has.saturating_add(*arrows);
+                }
             }
             _ => {}
         }

@@ -173,6 +173,27 @@ fn who_is_put_somewhere_keeps_its_body_and_finds_room() {
     assert_eq!(state(&arena, HERO).hit_points, 0.5);
 }
 
+#[test]
+fn arrows_are_added_where_they_are_counted() {
+    let order = |arrows| Order::AddArrows {
+        fighter: HERO,
+        arrows,
+    };
+    let mut config = FighterConfig::hero();
+    config.bow.as_mut().unwrap().arrows = Some(2);
+    let mut arena = Slab::default().arena(config, &[DVec3::Y * 1.5]);
+    idle(&mut arena, &[order(3)]);
+    assert_eq!(arena.fighter(HERO).unwrap().arrows(), Some(5));
+    idle(&mut arena, &[order(u32::MAX)]);
+    assert_eq!(arena.fighter(HERO).unwrap().arrows(), Some(u32::MAX));
+    // Nothing changes where they are not counted.
+    let [mut with, mut without] = [pair(), pair()];
+    let events = idle(&mut with, &[order(3)]);
+    assert_eq!(events, idle(&mut without, &[]));
+    assert_eq!(with.fighter(HERO).unwrap().arrows(), None);
+    assert_eq!(with.fingerprint(), without.fingerprint());
+}
+
 /// A blow that still waits for its tick is dropped when the fighter is moved.
 #[test]
 fn who_is_put_somewhere_is_not_struck_there() {

@@ -3,8 +3,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::support::{Melee, Slab, arena_with, giant, level_ground, weak_point};
-use clamber_fight::{Arena, ArenaConfig, ArenaError, ArenaState, FighterConfig};
+use crate::support::{GIANT, Melee, Slab, arena_with, giant, level_ground, step_with, weak_point};
+use clamber_climber::ClimberInput;
+use clamber_fight::{
+    Arena, ArenaConfig, ArenaError, ArenaPart, ArenaState, FighterConfig, FighterId, Order,
+};
 use clamber_surface::Fingerprint;
 use glam::{DVec3, Vec3};
 use serde_json::Value;
@@ -59,7 +62,9 @@ fn a_restored_arena_goes_on_with_the_same_bits() {
         states.push(melee.arena.save());
         sums.push(melee.arena.fingerprint());
         assert_eq!(states[tick as usize].fingerprint(), sums[tick as usize]);
-        assert_eq!(melee.arena.fingerprints().0, sums[tick as usize]);
+        let (sum, parts) = melee.arena.fingerprints();
+        assert_eq!(sum, sums[tick as usize]);
+        assert_eq!(parts, melee.arena.part_fingerprints());
         if tick >= AGAIN && tick % 3 == 0 {
             let from = tick - AGAIN;
             melee.arena.restore(&states[from as usize]).unwrap();
@@ -435,6 +440,34 @@ fn a_snapshot_of_a_giant_and_eight_climbers_is_small() {
     }
     println!("{most} bytes");
     assert!(most <= 64 * 1024, "{most} bytes");
+}
+
+/// What is done to one creature or fighter changes the hash of that part, and of no other.
+#[test]
+fn fingerprints_of_parts_tell_which_part_differs() {
+    let parts = |orders: &[Order]| {
+        let places = [DVec3::Y, DVec3::new(3.0, 1.0, 0.0)];
+        let mut arena = Slab::with_heart(100.0).arena(FighterConfig::hero(), &places);
+        step_with(&mut arena, &[ClimberInput::IDLE; 2], orders);
+        arena.part_fingerprints()
+    };
+    let before = parts(&[]);
+    let (creature, fighter) = (GIANT, FighterId(1));
+    let harm = Order::Harm {
+        creature,
+        weak_point: 0,
+        damage: 1.0,
+    };
+    let damage = 0.25;
+    for (order, changed) in [
+        (harm, ArenaPart::Creature(creature)),
+        (Order::Hurt { fighter, damage }, ArenaPart::Fighter(fighter)),
+    ] {
+        let after = parts(&[order]);
+        let both = before.iter().zip(&after);
+        let differ = both.filter_map(|(one, other)| (one != other).then_some(one.0));
+        assert_eq!(differ.collect::<Vec<_>>(), [changed]);
+    }
 }
 
 #[test]

@@ -281,8 +281,6 @@ impl ArenaEncoder {
         output: &mut Output<W>,
     ) -> Result<(), RecordError> {
         if prost::Message::encoded_len(&data.message) > LARGEST_TICK {
-            // The ticks before this one are kept.
-            output.flush()?;
             let reason = "a tick of more than 2 MiB, which no reader takes";
             return Err(RecordError::encode(topics::ARENA, reason));
         }

@@ -189,10 +189,9 @@ fn who_joins_without_an_order_is_told() {
     assert!(matches!(error, RecordError::Joined), "{error}");
 }
 
-/// A tick that is larger than a reader takes ends the recording with an error. The ticks before it are kept, also those
-/// of its chunk.
-#[test]
-fn the_ticks_before_one_that_is_too_large_are_kept() {
+/// Records 30 ticks in one chunk, of which tick 21 is larger than a reader takes. `before` is called at the end of tick
+/// 20. Returns the disk, and the error with which the recording ends.
+fn with_a_tick_too_large(before: impl Fn(&Disk)) -> (Disk, RecordError) {
     let mut arena = arena();
     let info = ArenaInfo::of(&arena);
     let options = RecordOptions {
@@ -209,18 +208,36 @@ fn the_ticks_before_one_that_is_too_large_are_kept() {
     let size = Order::to_bytes(std::slice::from_ref(&order)).unwrap().len();
     let many = vec![order; (2 << 20) / (size - 1).max(1) * 2];
     for tick in 0..30 {
+        if tick == 20 {
+            before(&disk);
+        }
         arena.step(&inputs(tick), &terrain).unwrap();
+        // The step of index 20 leads to tick 21.
         let orders = if tick == 20 { &many[..] } else { &[] };
         recorder
             .tick(&arena, &inputs(tick), orders, &terrain)
             .unwrap();
     }
     let error = recorder.finish().map(drop).unwrap_err();
+    (disk, error)
+}
+
+/// A tick that is larger than a reader takes ends the recording with an error. The ticks before it are kept, also those
+/// of its chunk.
+#[test]
+fn the_ticks_before_one_that_is_too_large_are_kept() {
+    let (disk, error) = with_a_tick_too_large(|_| {});
     assert!(error.to_string().contains("2 MiB"), "{error}");
     let recording = ArenaRecording::from_bytes(disk.bytes()).unwrap();
     assert_eq!(*recording.ending(), Ending::Early);
-    // The step of index 20 leads to tick 21.
     assert_eq!(recording.last(), Some(20));
+}
+
+/// If the ticks before it cannot be written, the error still tells what ended the recording.
+#[test]
+fn a_tick_that_is_too_large_is_told_though_the_disk_is_full() {
+    let (_, error) = with_a_tick_too_large(Disk::fill);
+    assert!(error.to_string().contains("2 MiB"), "{error}");
 }
 
 /// Meshes beyond the limit are left out, and the recording goes on.

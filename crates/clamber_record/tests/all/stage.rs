@@ -45,6 +45,8 @@ pub(crate) struct Disk {
     pause: Duration,
     /// While it is true, writes wait.
     stalls: Arc<AtomicBool>,
+    /// While it is true, writes fail.
+    full: Arc<AtomicBool>,
 }
 
 impl Disk {
@@ -59,6 +61,11 @@ impl Disk {
         self.stalls.store(stalls, Ordering::Relaxed);
     }
 
+    /// Makes all later writes fail.
+    pub(crate) fn fill(&self) {
+        self.full.store(true, Ordering::Relaxed);
+    }
+
     pub(crate) fn bytes(&self) -> Vec<u8> {
         self.bytes.lock().unwrap().clone()
     }
@@ -68,6 +75,9 @@ impl Write for Disk {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         while self.stalls.load(Ordering::Relaxed) {
             std::thread::sleep(Duration::from_millis(1));
+        }
+        if self.full.load(Ordering::Relaxed) {
+            return Err(std::io::Error::other("the disk is full"));
         }
         if bytes.len() > 1000 {
             std::thread::sleep(self.pause);

@@ -12,6 +12,7 @@ use serde::Serialize;
 use super::footing::{is_inside, off_its_point, reach, reference_position};
 use super::{Battle, BattleOptions, CREATURE, Story, TERRAIN, TICK};
 use crate::json::number;
+use crate::measure::larger;
 use crate::valley;
 
 /// Ticks between two checks of whether the climber is inside the creature. Such a check goes over all triangles and
@@ -250,7 +251,8 @@ impl Watch {
     /// Checks a climber that climbs or holds on. Returns the drift.
     fn look_at_hold(&mut self, at: At<'_>, climber: &Climber, hold: &Attachment) -> f64 {
         let place = reference_position(at.0, &hold.material).unwrap_or(DVec3::INFINITY);
-        if at.1.distance(place) > reach(climber) {
+        let distance = at.1.distance(place);
+        if distance.is_nan() || distance > reach(climber) {
             self.count(OUT_OF_REACH, at, "out of reach");
         }
         let drift = hold.point.distance(place);
@@ -275,9 +277,8 @@ impl Watch {
         };
         let radius = climber.config().body.radius;
         let (point, off, is_pushed) = off_its_point(at, &recorded, radius);
-        let (contact, sunk) = (support.point.distance(point), (-off).max(0.0));
-        // Not by `f64::max`, which ignores NaN.
-        let drift = if sunk > contact { sunk } else { contact };
+        let (contact, sunk) = (support.point.distance(point), larger(-off, 0.0));
+        let drift = larger(sunk, contact);
         let what = format!(
             "contact {contact:.1e} m from its material point, body {sunk:.1e} m deep in it"
         );
@@ -296,11 +297,16 @@ impl Watch {
     fn look_inside(&mut self, at: At<'_>) {
         let (battle, DVec3 { x, y, z }) = at;
         let look = battle.tick().is_multiple_of(INSIDE_EVERY);
-        let below = valley::contains(x, z) && y < valley::height(x, z);
-        if below || look && is_inside(battle.surface(), at.1) {
-            let what = if below { "below the ground" } else { "inside" };
-            self.count(INSIDE, at, what);
-        }
+        let what = if !at.1.is_finite() {
+            "not finite"
+        } else if valley::contains(x, z) && y < valley::height(x, z) {
+            "below the ground"
+        } else if look && is_inside(battle.surface(), at.1) {
+            "inside"
+        } else {
+            return;
+        };
+        self.count(INSIDE, at, what);
     }
 
     /// Notes how the climber left the creature, and the fall when it comes to the ground.
@@ -388,8 +394,11 @@ mod tests {
         let battle = Battle::new(&giant, &options).unwrap();
         let mut watch = Watch::default();
         watch.measure(DRIFT, f64::NAN, (&battle, DVec3::ZERO), "lost");
+        watch.look_inside((&battle, DVec3::Y * f64::NAN));
         let checks = watch.checks(&battle, &options);
-        let drift = checks.iter().find(|check| check.name == DRIFT).unwrap();
-        assert!(!drift.holds() && drift.cause.is_some(), "{drift:?}");
+        for name in [DRIFT, INSIDE] {
+            let check = checks.iter().find(|check| check.name == name).unwrap();
+            assert!(!check.holds() && check.cause.is_some(), "{check:?}");
+        }
     }
 }

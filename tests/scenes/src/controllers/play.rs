@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::set::{IDLE, Input, Set};
 use super::{ground, platforms, walls};
 use crate::SceneError;
-use crate::measure::quantile;
+use crate::measure::{larger, quantile};
 
 /// A character's positions in a scene.
 pub struct Seen {
@@ -27,7 +27,7 @@ impl Seen {
     pub fn most(&self, of: impl Fn(f64, DVec3) -> f64) -> f64 {
         let ticks = self.positions.iter().enumerate();
         let values = ticks.map(|(tick, p)| of(self.dt * (tick as f64 + 1.0), *p));
-        values.fold(0.0, f64::max)
+        values.fold(0.0, larger)
     }
 }
 
@@ -151,10 +151,10 @@ pub fn play(
         seen.positions.push(character.position());
         in_air += u32::from(!character.stands());
     }
-    // Checked here, because `f64::max` ignores NaN.
+    // Checked here, because a scene's error may be that of a part of the positions.
     let is_finite = seen.positions.iter().all(|p| p.is_finite());
     let error = if is_finite {
-        (scene.error)(&seen).max(0.0)
+        larger((scene.error)(&seen), 0.0)
     } else {
         f64::NAN
     };

@@ -28,8 +28,8 @@ use task::Task;
 /// Runs stress cases, fuzz targets, battles and arenas with fresh seeds until the time is up.
 ///
 /// Prints a report and writes it to report.md. Exits with 1 if there is a finding, or if the slowest thousandth of a
-/// class of queries takes more than 20 times the class's median, and with 2 after an error. The same seed gives the same
-/// tasks in the same order.
+/// class of queries takes more than 20 times the class's median, and with 2 after an error. The same seed gives the
+/// same tasks in the same order.
 #[derive(Debug, Parser)]
 #[command(name = "soak", version)]
 struct Options {

@@ -127,7 +127,7 @@ fn blows_add_up_and_hurt() {
 }
 
 #[test]
-fn blows_that_are_not_finite_are_refused_and_hurt_nobody() {
+fn blows_that_are_out_of_range_are_refused_and_hurt_nobody() {
     let sane = ClimberBlow {
         velocity: Vec3::Y,
         damage: 0.2,
@@ -147,6 +147,10 @@ fn blows_that_are_not_finite_are_refused_and_hurt_nobody() {
             ..sane
         },
         ClimberBlow {
+            damage: 1.5,
+            ..sane
+        },
+        ClimberBlow {
             velocity: Vec3::new(0.0, f32::NAN, 0.0),
             ..sane
         },
@@ -156,13 +160,16 @@ fn blows_that_are_not_finite_are_refused_and_hurt_nobody() {
         },
     ];
     for wrong in blows {
-        let (mut app, _, climber) = standing(64.0);
-        input(&mut app, climber).strike(wrong);
-        input(&mut app, climber).strike(sane);
-        updates(&mut app, 3);
-        let after = state(&app, climber);
-        assert_eq!(after.hit_points, 1.0, "{wrong:?}");
-        assert!(after.position.is_finite(), "{wrong:?}");
+        for blows in [&[wrong][..], &[wrong, sane], &[sane, wrong]] {
+            let (mut app, _, climber) = standing(64.0);
+            for blow in blows {
+                input(&mut app, climber).strike(*blow);
+            }
+            updates(&mut app, 3);
+            let after = state(&app, climber);
+            assert_eq!(after.hit_points, 1.0, "{blows:?}");
+            assert!(after.position.is_finite(), "{blows:?}");
+        }
     }
 }
 
