@@ -191,6 +191,6 @@ pub struct StepReport {
     pub changes_left: bool,
     /// True if the rounds sufficed: no obstacle is on the way from the body's previous position to its new one.
     /// Obstacles that the body began inside of, or is crushed by, do not count. The value means nothing if the support
-    /// was placed elsewhere in this tick: the body is then not swept, only pushed out of obstacles.
+    /// was teleported in this tick: the body is then not swept, only pushed out of obstacles.
     pub is_clear: bool,
 }

@@ -40,7 +40,7 @@ pub struct ClimberObstacle {
     now: WorldCapsule,
     /// Displacement of the capsule over the tick, metres.
     way: DVec3,
-    /// True if the support was placed elsewhere, or the body does not move.
+    /// True if the support was teleported, or the body does not move.
     placed: bool,
     /// The capsule after the climber's own last tick, in world space.
     before: WorldCapsule,
@@ -321,7 +321,7 @@ impl Obstacle for ClimberObstacle {
     }
 
     fn character(&self) -> Option<CharacterBody> {
-        // A body that was placed counts as having been there before.
+        // A body that was teleported counts as having been there before.
         let capsule = if self.placed { self.now } else { self.before };
         Some(CharacterBody {
             capsule,

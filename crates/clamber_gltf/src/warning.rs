@@ -57,8 +57,8 @@ pub enum ImportWarning {
         /// Number of materials.
         materials: usize,
     },
-    /// Materials whose extras have the key `ledge`, with any value, also `false`. It is ignored: climbers find ledges
-    /// by their shape.
+    /// Materials whose extras have the key `ledge`, with any value but `null`. It is ignored: climbers find ledges by
+    /// their shape.
     #[error(
         "ignored the key `ledge` of materials, since climbers find ledges by their shape: {materials}"
     )]

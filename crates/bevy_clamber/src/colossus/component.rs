@@ -40,11 +40,14 @@ pub struct Colossus {
     pub brain: Handle<ColossusBrain>,
     /// Seed of its random numbers.
     pub seed: u64,
-    /// Largest distance to which it walks from its first place, metres.
+    /// Radius of the arena around the place where the creature began, metres; 100 by [`Colossus::new`]. The creature
+    /// does not walk out of it.
     pub arena: f64,
     /// Steepest ground that it walks onto, radians.
     pub most_slope: f64,
-    /// Largest distance at which it sees, metres.
+    /// Largest horizontal distance at which the creature sees a person, metres, from the model's origin to the middle
+    /// of the person; 150 by [`Colossus::new`]. It sees only people within 103 degrees of its heading to either side,
+    /// and none behind terrain. People closer than half its width it notices wherever they are.
     pub sight: f64,
 }
 

@@ -41,7 +41,8 @@ struct Spare {
     palette: Palette,
 }
 
-/// Number of first frames in which a creature may jump without a warning, since its animation starts in them.
+/// Number of the drawn frame, counted from 1, from which on a jump of the creature is warned of. In earlier frames its
+/// animation may start, which looks like a jump.
 const FIRST_FRAMES: u8 = 8;
 
 impl DrawnSurface {

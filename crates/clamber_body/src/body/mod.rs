@@ -70,7 +70,8 @@ impl Body {
     /// [`BodyError`] for numbers that are not finite, a negative `dt`, or a figure with another number of joints than
     /// the body's own: nothing changes then. Also for limbs or a head that cannot be posed, such as a limb that a clip
     /// scales to nothing: [`Body::world_from_model`] and [`Body::hold`] stay as after the last update then, but the
-    /// clips have advanced, and [`Body::pose`] is their pose, with some limbs bent already.
+    /// clips have advanced, [`Body::pose`] is their pose, with some limbs bent already, and [`Body::plants`] has this
+    /// frame's plants, which later updates may list again.
     pub fn update(
         &mut self,
         figure: &Figure,
@@ -101,7 +102,7 @@ impl Body {
     }
 
     /// Position, rotation and scale of the model in the world after the last update: from model space to world space,
-    /// metres. The identity before the first update.
+    /// metres. The identity before the first update, and from [`Body::reset`] until the next one.
     pub fn world_from_model(&self) -> Similarity {
         self.memory
             .map_or(Similarity::IDENTITY, |memory| memory.similarity())
@@ -119,8 +120,9 @@ impl Body {
         self.player.events()
     }
 
-    /// The material point that a hand or foot is on. `None` if the hand or foot is in the air, on its way, or free.
-    /// Hands arrive 0.2 to 0.3 seconds after the climber has grabbed.
+    /// The material point that a hand or foot is on. `None` if the hand or foot is in the air, on its way, or free;
+    /// also before the first update, and from [`Body::reset`] until the next one. Hands arrive 0.2 to 0.3 seconds after
+    /// the climber has grabbed.
     pub fn hold(&self, extremity: Extremity) -> Option<&Attachment> {
         let limb = &self.memory.as_ref()?.limbs[extremity.index()];
         limb.hold().map(|hold| &hold.attachment)
@@ -129,7 +131,7 @@ impl Body {
     /// The point of a hand or foot with which it touches what it is on, in world space, metres, in the pose of the last
     /// update: the middle of a palm, or the part of a foot that is down: the sole below the ankle, the heel, the ball
     /// or the toes. A hand or foot in the air has such a point, too; [`Body::hold`] tells whether it is on anything.
-    /// `None` before the first update.
+    /// `None` before the first update, and from [`Body::reset`] until the next one.
     pub fn touching_point(&self, figure: &Figure, extremity: Extremity) -> Option<DVec3> {
         let memory = self.memory.as_ref()?;
         let limb = &memory.limbs[extremity.index()];
@@ -140,7 +142,7 @@ impl Body {
     }
 
     /// The heel and the ball of a foot, both on the sole, in world space, metres, in the pose of the last update.
-    /// `None` before the first update.
+    /// `None` before the first update, and from [`Body::reset`] until the next one.
     pub fn sole(&self, figure: &Figure, side: Side) -> Option<[DVec3; 2]> {
         let root = self.memory.as_ref()?.root;
         let shape = figure.limb(Extremity::Foot(side));
@@ -148,8 +150,10 @@ impl Body {
         Some([shape.heel, shape.ball].map(|point| root.point(place.point(point))))
     }
 
-    /// Forgets where the body, its hands and its feet are, as after a teleport. The next update puts the body in place
-    /// at once, and [`Body::plants`] is empty after it.
+    /// Forgets where the body, its hands and its feet are, as after a teleport. Until the next update,
+    /// [`Body::world_from_model`] is the identity, and no hand or foot has a place; [`Body::pose`], [`Body::plants`]
+    /// and [`Body::events`] stay those of the last update. The next update puts the body in place at once, and
+    /// [`Body::plants`] is empty after it.
     pub fn reset(&mut self) {
         self.memory = None;
         self.player.restart();

@@ -1,4 +1,4 @@
-//! Lost holds, stretching skin, acts, refused frames, missing obstacles, and allocations.
+//! Lost holds, stretching skin, overlay clips, refused frames, missing obstacles, and allocations.
 
 use clamber_animation::{Layer, LayerKind};
 use clamber_body::{Body, BodyError, BodyInput, Extremity, OverlayClip, Side};
@@ -215,8 +215,8 @@ fn a_hand_with_a_weapon_leaves_its_hold() {
     assert!(cling.body.set_overlay(&figure, Some(wrong), 0.2).is_err());
 }
 
-/// An act may begin at any moment of a climb: the act takes its hand only when the other hand holds, and that hand goes
-/// on holding.
+/// An overlay clip may begin at any moment of a climb: it takes its hand only when the other hand holds, and that hand
+/// goes on holding.
 #[test]
 fn an_act_never_takes_both_hands() {
     let figure = figures::hero();

@@ -41,7 +41,7 @@ pub struct ClimberState {
     /// sliding or tumbling, and optional in a custom mode.
     pub support: Option<Support>,
     /// Velocity of the support over the last tick, in world space, metres a second. `None` without a support, and after
-    /// the support was placed elsewhere or pushed by the climber's landing.
+    /// the support was teleported or pushed by the climber's landing.
     pub support_velocity: Option<DVec3>,
     /// Share of the climber's weight that its support got in the last tick: 1 while the support is at rest, 0 while
     /// both fall freely. 0 without a support that can be pushed. Not negative.

@@ -17,15 +17,13 @@ pub(crate) const CONTINUOUS_GAP: f64 = 0.025;
 pub(super) struct Carried {
     pub(super) support: Support,
     pub(super) motion: PointMotion,
-    /// Velocity of the support over the previous tick; `None` if that is not known, or the support was placed
-    /// elsewhere.
+    /// Velocity of the support over the previous tick; `None` if that is not known, or the support was teleported.
     pub(super) velocity_before: Option<DVec3>,
-    /// The climber's position a tick ago. If the support was placed elsewhere, the corresponding position at the new
-    /// place.
+    /// The climber's position a tick ago. If the support was teleported, the corresponding position at the new place.
     pub(super) start: DVec3,
     /// The position to which its support has carried it.
     pub(super) position: DVec3,
-    /// False if the support was placed elsewhere: the body did not move there, and is not swept.
+    /// False if the support was teleported: the body did not move there, and is not swept.
     pub(super) swept: bool,
 }
 

@@ -87,8 +87,8 @@ impl Tick<'_> {
         self.leave(ClimberMode::Falling)
     }
 
-    /// Updates the shake from the motion of the support. A support that was placed elsewhere, or whose last velocity is
-    /// not known, adds no acceleration.
+    /// Updates the shake from the motion of the support. A support that was teleported, or whose last velocity is not
+    /// known, adds no acceleration.
     pub(super) fn feel(&mut self, motion: &PointMotion, was_placed: bool) {
         let before = self.state.support_velocity.filter(|_| !was_placed);
         // The climber's own push has moved a free support as expected, a held support not at all, and others in

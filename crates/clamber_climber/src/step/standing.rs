@@ -232,7 +232,7 @@ impl Tick<'_> {
     }
 
     /// True if no moving obstacle is in the way of the tick's movement, shifted by a correction of its end. Always true
-    /// if the support was placed elsewhere, since the body is not swept then.
+    /// if the support was teleported, since the body is not swept then.
     pub(super) fn is_corrected_clear(&mut self, carried: &Carried, corrected: DVec3) -> bool {
         let moved = self.state.position;
         let body = self.body();

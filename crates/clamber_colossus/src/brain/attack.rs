@@ -29,9 +29,9 @@ pub struct Attack {
     /// The clip that is played once.
     pub clip: String,
     /// Joints whose skin deals the limb's blows to people it touches, from the clip's marker `active` to its marker
-    /// `recovery`. For example `["foot.R", "toe.R"]`, or `["thumb.*.R", "hand.R"]`, where `*` stands for any text. The
-    /// last one is the limb's end: `aim` moves it to the prey, and waves, shots and beams start there. If the last name
-    /// has a `*`, it is the last joint of the skeleton that fits.
+    /// `recovery`. For example `["foot.R", "toe.R"]`, or `["thumb.*.R", "hand.R"]`, where `*` stands for any text, once
+    /// in a name. The last one is the limb's end: `aim` moves it to the prey, shots and beams start there, and waves
+    /// above the ground next to it. If the last name has a `*`, it is the last joint of the skeleton that fits.
     pub limb: Vec<String>,
     /// Share of a person's full hit points that a blow of the limb costs, from 0 to 1. With 0 a blow only changes the
     /// person's velocity, by `throw`. If both are 0, the limb itself strikes nobody; a wave, a shot or a beam of the
@@ -47,9 +47,9 @@ pub struct Attack {
     /// does.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub aim: f64,
-    /// A wave from the ground near the limb's end, or from the limb's end if there is no ground near it. It starts at
-    /// the clip's first marker `impact`, or at its marker `recovery` if it has none. The limb, its wave and its beam
-    /// together strike a person once.
+    /// A wave from above the ground near the limb's end, or from above the limb's end if there is no ground near it. It
+    /// starts at the clip's first marker `impact`, or at its marker `recovery` if it has none. The limb, its wave and
+    /// its beam together strike a person once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wave: Option<Wave>,
     /// A shot that leaves the limb's end at the clip's marker `active`. It ends where its middle meets terrain or
@@ -72,7 +72,8 @@ pub struct Attack {
 /// A growing ball that strikes each person once when it reaches them: a shock wave, a tremor, a blast.
 ///
 /// The centre is above the ground, or off the surface that a shot has met, by 0.5 m or a thirtieth of `radius`,
-/// whichever is more. Lower rocks do not stop it. Distances are from the centre to a person's skin.
+/// whichever is more; if terrain there is nearer than that, half way to it. Lower rocks do not stop it. Distances are
+/// from the centre to a person's skin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wave {

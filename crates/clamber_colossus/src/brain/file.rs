@@ -36,7 +36,8 @@ pub struct BrainFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MoodFile {
-    /// Seconds in which it fades from 1 to 0, at a constant rate: from 0 to 1,000,000, but at least one tick.
+    /// Seconds in which it fades from 1 to 0, at a constant rate: from 0 to 1,000,000; less than a tick counts as one
+    /// tick.
     pub fades: f64,
     /// Rules that raise the mood. In each tick the mood is at least the largest [`RaiseFile::to`] of the rules whose
     /// conditions hold.
@@ -68,7 +69,8 @@ pub struct StateFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gaze: Option<Gaze>,
     /// Seconds in which the clip of the act fades in, from the pose that the creature has when the act begins: from 0,
-    /// for no fade, to 1,000,000; 0.6 by default. Walks and turns do not use it, nor does a sleep, which plays no clip.
+    /// for no fade, to 1,000,000; 0.6 by default. In a state without an act, and in place of an attack that is blocked,
+    /// the idle clip fades in within this time. Walks and turns do not use it, nor does a sleep, which plays no clip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fade: Option<f64>,
     /// Names of weak points that can be hurt in this state and its inner states even if their order
@@ -98,8 +100,9 @@ pub struct StateFile {
 
 /// A transition from one state to another. It is possible while `when` and `any` (conditions), `on` (a marker) and
 /// `after` (a time) all allow it; without any of these it is taken as soon as its state is entered. Two things hold up
-/// even such a transition: an act that has to be played to its end, unless the transition `interrupts` it, and the
-/// target's [`cooldown`](StateFile::cooldown). If several are possible, `priority` and `weight` decide.
+/// even such a transition: an act that has to be played to its end, and the target's
+/// [`cooldown`](StateFile::cooldown). A transition that `interrupts` the act waits only until the tick after the one in
+/// which its state is entered. If several are possible, `priority` and `weight` decide.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TransitionFile {
@@ -173,10 +176,12 @@ pub enum StateAction {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Walk {
-    /// The goal of the walk.
+    /// The goal of the walk. For a goal outside the creature's arena
+    /// ([`CreatureConfig::arena`](crate::CreatureConfig::arena)), the nearest place in the arena counts.
     pub to: Place,
-    /// The walk is done once the goal is within this level distance of the creature's origin, metres; with `strike`,
-    /// once it is within this distance of where that clip strikes.
+    /// The walk is done once the goal is within this level distance of the creature's origin, metres; 0.015 times the
+    /// creature's height if that is more. With `strike` it is done once the goal is within this distance of where that
+    /// clip strikes, with no least distance.
     pub within: f64,
     /// Name of the clip of an attack of this brain. The creature stops where the limb of this attack would strike the
     /// goal, and turned so that it would: not straight towards the goal if the limb strikes to one side. `None`, the

@@ -112,7 +112,7 @@ struct Transition {
 }
 
 impl Transition {
-    /// True if it has no conditions, so that it is taken as soon as its state is entered.
+    /// True if it has no conditions, so that it can be taken in the tick in which its state is entered.
     fn is_instant(&self) -> bool {
         self.when.is_empty() && self.any.is_empty() && self.on.is_none() && self.after == [0, 0]
     }
@@ -191,7 +191,8 @@ impl Brain {
         self.state(state).map_or(Gaze::Clip, |state| state.gaze)
     }
 
-    /// Seconds in which the clip of a state's act fades in.
+    /// Seconds in which the clip of a state's act fades in, or the idle clip in a state without an act and in place of
+    /// an attack that is blocked ([`StateFile::fade`]).
     pub fn fade(&self, state: StateId) -> f64 {
         self.state(state).map_or(DEFAULT_FADE, |state| state.fade)
     }

@@ -129,8 +129,8 @@ impl Creature {
         &self.surface
     }
 
-    /// The skin, for disabling parts of it, so that weapons and climbers no longer touch them, or for editing it. Each
-    /// step poses it anew. [`CreatureState`] does not save such changes.
+    /// The skin, for disabling parts of it, so that weapons and climbers no longer touch them, or for editing it. A
+    /// step poses it anew, unless the creature sleeps and is still. [`CreatureState`] does not save such changes.
     pub fn surface_mut(&mut self) -> &mut SkinnedSurface {
         &mut self.surface
     }
@@ -153,8 +153,8 @@ impl Creature {
         &self.report
     }
 
-    /// Restores a saved state. The skin is placed without motion, and later steps give the same bits as after the state
-    /// was saved.
+    /// Restores a saved state. The skin is teleported, so that it has no motion, and later steps give the same bits as
+    /// after the state was saved.
     ///
     /// # Errors
     /// [`ColossusError::OtherKind`] if the state belongs to another kind of creature; also the errors of posing the

@@ -36,8 +36,8 @@ const MOST_SENT: f64 = 1e12;
 
 impl Creature {
     /// Puts the creature somewhere else, at rest, as if it had begun there; its home moves there, too. Its brain, clips
-    /// and wounds stay as they are, and its waves and shots stay where they are. The skin is placed there without
-    /// motion, so that riders are left behind.
+    /// and wounds stay as they are, and its waves and shots stay where they are. The skin is teleported there, so that
+    /// riders are left behind.
     ///
     /// # Errors
     /// [`ColossusError::OutOfRange`] if the place is not finite or beyond 1e12 m, or the heading is beyond 1e6 radians;

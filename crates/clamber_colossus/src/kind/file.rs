@@ -168,6 +168,8 @@ impl FurFile {
 #[serde(deny_unknown_fields)]
 pub struct WeakPointFile {
     /// Name of the weak point, for the game and for [`StateFile::exposes`](crate::brain::StateFile::exposes).
+    /// [`CreatureState::carry_over`](crate::CreatureState::carry_over) finds the weak point by it when the brain's file
+    /// is reloaded.
     pub name: String,
     /// The joint that moves it.
     pub joint: String,
@@ -227,8 +229,9 @@ pub enum Knee {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GaitFile {
-    /// Name of the clip that is played in a loop while the creature stands and plays no other clip: in a state without
-    /// an act, before a blocked attack, and at the end of a walk or a turn.
+    /// Name of the clip that is played in a loop while the creature plays no other clip: in a state without an act, in
+    /// place of an attack that is blocked, in a turn if the gait has no clips of turning, and in a walk or a turn while
+    /// the creature stands or goes backwards, as at its end.
     pub idle: String,
     /// Name of the clip that is played in a loop while the creature walks. It is a walk on the spot; `speed` says how
     /// fast the creature moves meanwhile.
@@ -255,7 +258,8 @@ pub struct GaitFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlateFile {
-    /// Name of the plate, for the game.
+    /// Name of the plate, for the game. [`CreatureState::carry_over`](crate::CreatureState::carry_over) finds the plate
+    /// by it when the brain's file is reloaded.
     pub name: String,
     /// The plate's triangles are those with this number in `SurfaceTag::user`, more than 0. In a glTF file the number
     /// is the key `user` in the object `clamber` of a material's extras: `{"clamber": {"user": 7}}`.

@@ -9,8 +9,10 @@ use crate::brain::{BrainError, BrainProblem, check, whole};
 /// [`CreatureState::plate`](crate::CreatureState::plate) counts down.
 #[derive(Clone, Debug)]
 pub struct Plate {
-    /// Name of the plate, from the brain's file, for the game. Names need not be unique: elsewhere a plate is given by
-    /// its index in [`CreatureKind::plates`](crate::CreatureKind::plates).
+    /// Name of the plate, from the brain's file, for the game.
+    /// [`CreatureState::carry_over`](crate::CreatureState::carry_over) matches plates by name, and plates of the same
+    /// name in their order, so names need not be unique. Elsewhere a plate is given by its index in
+    /// [`CreatureKind::plates`](crate::CreatureKind::plates).
     pub name: String,
     /// Damage at which the plate staggers, in the same unit as hit points of weak points. The damage of all hits on the
     /// plate adds up. When the sum reaches this number, the plate staggers, and the sum begins at 0 again. What the

@@ -40,8 +40,9 @@ pub struct SwordLight {
 impl Arena {
     /// Rays of light from a fighter's sword, for drawing: they show the player where the nearest weak point that can be
     /// hurt now is. `aim` is the direction in which the sword points, in world space; the rays gather as it turns
-    /// towards that weak point. `None` without a sword, if terrain or a creature is between the blade's tip and the
-    /// sun, if no weak point is open, or if `aim` or the direction to the sun is zero.
+    /// towards that weak point. `None` if there is no such fighter or it has no sword, if terrain or a creature is
+    /// between the blade's tip and the sun within 2,000 m of the tip, if no weak point is open, if the blade's tip is
+    /// at the weak point, or if `aim` or the direction to the sun is zero.
     pub fn sword_light(
         &self,
         fighter: FighterId,

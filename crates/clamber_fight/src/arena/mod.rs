@@ -266,8 +266,9 @@ impl Arena {
         &self.projectiles
     }
 
-    /// Events of the last step, in the order in which the step produced them: by its phases ([`Arena::step`]), not by
-    /// time within the tick. The next step replaces them. Empty before the first step and after a restore.
+    /// Events of the last step, in the order in which the step produced them: by its phases ([`Arena::step`]), and the
+    /// blows of creatures last. Only hits ([`ArenaEvent::Hit`]) are among themselves in the order of their times within
+    /// the tick. The next step replaces the events. Empty before the first step and after a restore.
     pub fn events(&self) -> &[ArenaEvent] {
         &self.events
     }

@@ -79,7 +79,8 @@ pub enum WeaponAction {
         /// Share of the full strength, from 0 to 1.
         charge: f64,
     },
-    /// Pulls the blade out of the skin, or raises it again after a stab into the air.
+    /// Cannot act yet after a stab: the blade is held where the stab has ended, in the skin or in the air, until the
+    /// fighter can act again.
     PullOut {
         /// Seconds left.
         seconds: f64,

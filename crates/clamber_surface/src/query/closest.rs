@@ -19,9 +19,9 @@ impl ModelSpace<'_> {
         self.instance.closest(&probe, length(max_distance)?)
     }
 
-    /// The material point nearest to a capsule's segment, at most the radius and `max_distance` away from the segment.
-    /// The hit's `distance` is measured from the segment, and is 0 if the segment crosses the skin. The capsule may
-    /// overlap the skin. `None` if there is no such point. Made for limbs.
+    /// The material point nearest to a capsule's segment, at most the capsule's radius plus `max_distance` away from
+    /// the segment. The hit's `distance` is measured from the segment, and is 0 if the segment crosses the skin. The
+    /// capsule may overlap the skin. `None` if there is no such point. Made for limbs.
     pub fn closest_to_capsule(&self, capsule: &Capsule, max_distance: f32) -> Option<SurfaceHit> {
         let reach = f64::from(capsule.radius()) + length(max_distance)?;
         with_probe!(capsule, [Vec3::ZERO; 2], probe => {

@@ -12,8 +12,8 @@ pub struct DebrisReport {
     /// once for each creature.
     pub caught: u32,
     /// Bodies around which skin was found in this tick without having moved there: new bodies inside a creature, bodies
-    /// that were moved into one, and bodies where a creature is new, was placed, got skin by an edit or shows hidden
-    /// skin again. They are put out or let through from this tick on. A body counts once for each creature.
+    /// that were moved into one, and bodies where a creature is new, was teleported, got skin by an edit or shows
+    /// hidden skin again. They are put out or let through from this tick on. A body counts once for each creature.
     pub enclosed: u32,
     /// Bodies that are moved out of a creature whose skin appeared around them. A body counts once for each creature.
     pub put_out: u32,
