@@ -163,9 +163,10 @@ impl ArenaRecording {
                 step(arena, &recorded.inputs, &recorded.orders)?;
             }
             last = recorded.tick;
-            let (all, parts) = arena.fingerprints();
-            replay.difference = ArenaDifference::between(self.info(), &recorded, all, &parts);
-            if replay.difference.is_some() {
+            let all = arena.fingerprint();
+            if all != recorded.fingerprint {
+                let parts = arena.part_fingerprints();
+                replay.difference = ArenaDifference::between(self.info(), &recorded, all, &parts);
                 break;
             }
             replay.agreed += 1;
