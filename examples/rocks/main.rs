@@ -30,9 +30,8 @@ const LOOK_EVERY: u32 = 10;
 
 /// Rocks, stones and logs fall on the giant, ride on it, and roll off when it shakes.
 ///
-/// Checks six times a second that no rock is inside the giant or under the ground, and at the end that none
-/// is more than 2 cm deep in its skin. Prints a table, and exits with 1 if a check failed, and with 2
-/// after an error.
+/// Checks six times a second that no rock is inside the giant or under the ground, and at the end that none is more
+/// than 2 cm deep in its skin. Prints a table, and exits with 1 if a check failed, and with 2 after an error.
 #[derive(Parser)]
 #[command(name = "rocks", version)]
 struct Options {

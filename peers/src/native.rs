@@ -133,9 +133,8 @@ impl Native {
         let triangles = skin.triangles();
         let vertices = u32::try_from(skin.positions.len())?;
         let triangle_count = u32::try_from(triangles.len())?;
-        // SAFETY: both slices hold three numbers for each of the counted vertices and triangles,
-        // since a `Vec3` is three f32 in a row. Every index is the index of a vertex, as
-        // `ColliderMesh` checks. C++ copies both.
+        // SAFETY: both slices hold three numbers for each of the counted vertices and triangles, since a `Vec3` is
+        // three f32 in a row. Every index is the index of a vertex, as `ColliderMesh` checks. C++ copies both.
         let peer = unsafe {
             (functions.new)(
                 skin.positions.as_ptr().cast(),
@@ -227,8 +226,7 @@ impl Peer for Native {
     fn cast_sphere(&mut self, sphere: &Sphere, motion: Vec3) -> Answer<Option<f32>> {
         let (center, motion) = (sphere.center.to_array(), motion.to_array());
         let mut time = 0.0;
-        // SAFETY: three elements of each array are read. The pointer is written to during the call
-        // only.
+        // SAFETY: three elements of each array are read. The pointer is written to during the call only.
         let answer = unsafe {
             (self.functions.cast_sphere)(
                 self.peer.as_ptr(),

@@ -47,8 +47,7 @@ pub(crate) struct Pendulum {
 /// The input of a [`Pendulum`]'s tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PendulumTick {
-    /// Greatest distance of the body from the pivot, metres. Below a nanometre the body rests at
-    /// the pivot.
+    /// Greatest distance of the body from the pivot, metres. Below a nanometre the body rests at the pivot.
     pub length: f64,
     /// Gravity, metres a second squared.
     pub gravity: DVec3,
@@ -78,8 +77,7 @@ pub(crate) struct PendulumReport {
     /// Tension of the arm per mass, metres a second squared: at the end of the tick, plus the mean
     /// pull of the pivot over the tick. 0 if slack.
     pub tension: f64,
-    /// Speed along the arm that was lost when a slack arm became taut, summed over the tick, metres
-    /// a second.
+    /// Speed along the arm that was lost when a slack arm became taut, summed over the tick, metres a second.
     pub caught: f64,
 }
 

@@ -14,8 +14,7 @@ pub struct Shake {
 }
 
 impl Shake {
-    /// Filters one tick of `dt` seconds in which the velocity changed by `velocity_change`, metres a
-    /// second.
+    /// Filters one tick of `dt` seconds in which the velocity changed by `velocity_change`, metres a second.
     ///
     /// A time constant of zero or less does not filter. The shake is unchanged if `dt` is not positive and finite, or
     /// the result would not be finite.

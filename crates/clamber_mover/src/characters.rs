@@ -170,8 +170,7 @@ impl<'a> Mover<'a> {
         self.has_characters
     }
 
-    /// True if a contact is with another character
-    /// ([`Obstacle::character`](clamber_world::Obstacle::character)).
+    /// True if a contact is with another character ([`Obstacle::character`](clamber_world::Obstacle::character)).
     pub fn is_character(&self, touch: &MoverContact) -> bool {
         self.characters().has(touch)
     }

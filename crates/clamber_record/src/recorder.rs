@@ -88,9 +88,8 @@ impl Default for RecordOptions {
 /// recorder's thread skins, encodes and writes its ticks in order, while the game runs. If that thread falls behind by
 /// some seconds, either ticks are left out, counted and logged, or the game waits: see [`RecordOptions::waits`].
 ///
-/// A chunk is held in memory and written as a whole, so the file is readable up to the last written chunk
-/// whenever writing stops. A recorder that is dropped without [`RecorderOf::finish`] finishes the file too, but
-/// ignores errors.
+/// A chunk is held in memory and written as a whole, so the file is readable up to the last written chunk whenever
+/// writing stops. A recorder that is dropped without [`RecorderOf::finish`] finishes the file too, but ignores errors.
 ///
 /// [`Recorder`](crate::Recorder) records one climber, [`ArenaRecorder`](crate::ArenaRecorder) an arena.
 pub struct RecorderOf<K: RecordingKind, W: Write> {

@@ -154,8 +154,7 @@ impl Renderer {
             .collect())
     }
 
-    /// Poses a skinned mesh on the device, and does not wait for it. With [`Gpu::wait`] it measures the cost
-    /// of posing.
+    /// Poses a skinned mesh on the device, and does not wait for it. With [`Gpu::wait`] it measures the cost of posing.
     ///
     /// # Errors
     /// As [`Renderer::draw`].

@@ -20,8 +20,7 @@ const PATIENCE: u64 = 120;
 /// Advice that ends an error message.
 const ANOTHER: &str = "give a glTF or GLB file with a skinned mesh";
 
-/// The creature, which stands on the ground when this is inserted: its surfaces are built, and the game
-/// begins.
+/// The creature, which stands on the ground when this is inserted: its surfaces are built, and the game begins.
 #[derive(Resource, Clone, Debug)]
 pub struct Creature {
     /// The root of its scene.

@@ -24,9 +24,8 @@ pub(crate) use tag::tag_colliders;
 /// Makes the skinned mesh of this entity (its `Mesh3d` and `SkinnedMesh`) a surface.
 ///
 /// Once the mesh and the inverse bind poses are loaded, the collider is built off the main thread. Entities with the
-/// same mesh, number of joints and [`ColliderTag`] share it. When it is ready, a
-/// [`PosedSurface`](crate::PosedSurface) is inserted on this entity.
-/// [`ColliderStatus`] holds the progress, or the error.
+/// same mesh, number of joints and [`ColliderTag`] share it. When it is ready, a [`PosedSurface`](crate::PosedSurface)
+/// is inserted on this entity. [`ColliderStatus`] holds the progress, or the error.
 ///
 /// ```
 /// # use bevy_ecs::prelude::*;

@@ -113,9 +113,8 @@ impl Body {
         &self.plants
     }
 
-    /// Markers and ends that clips passed in the last update, such as the marker `loose` of an overlay clip that
-    /// looses an arrow. The overlay clip is the last layer; names and markers of the clips are in
-    /// [`Figure::animations`].
+    /// Markers and ends that clips passed in the last update, such as the marker `loose` of an overlay clip that looses
+    /// an arrow. The overlay clip is the last layer; names and markers of the clips are in [`Figure::animations`].
     pub fn events(&self) -> &[AnimationEvent] {
         self.player.events()
     }

@@ -16,10 +16,9 @@
 //! the bounds themselves are derived where the bounds are computed, in `spheres.rs` and `root.rs`, and added to
 //! every radius. The bound of a node costs O(joints of the node). Nodes can be evaluated in any order.
 //!
-//! Kavan and Zara 2005 ("Fast Collision Detection for Skeletally Deformable Models", Computer
-//! Graphics Forum 24(3)) refit spheres of linear blend skinning by the hull argument;
-//! Unterguggenberger, Kerbl, Pernsteiner and Wimmer 2021 ("Conservative Meshlet Bounds for Robust
-//! Culling of Skinned Meshes", Computer Graphics Forum 40(7)) bound meshlets.
+//! Kavan and Zara 2005 ("Fast Collision Detection for Skeletally Deformable Models", Computer Graphics Forum 24(3))
+//! refit spheres of linear blend skinning by the hull argument; Unterguggenberger, Kerbl, Pernsteiner and Wimmer 2021
+//! ("Conservative Meshlet Bounds for Robust Culling of Skinned Meshes", Computer Graphics Forum 40(7)) bound meshlets.
 
 use fearless_simd::Simd;
 

@@ -58,8 +58,7 @@ impl Similarity {
         }
     }
 
-    /// True if all parts are finite, the scale is positive and normal, and the rotation has length
-    /// one to within 1e-5.
+    /// True if all parts are finite, the scale is positive and normal, and the rotation has length one to within 1e-5.
     pub fn is_valid(&self) -> bool {
         self.scale.is_normal()
             && self.scale > 0.0

@@ -17,8 +17,7 @@ pub(super) struct Adjacency {
 
 impl ColliderMesh {
     /// The triangles across the three edges of a triangle: those from corner 0 to 1, from 1 to 2, and from 2 to 0.
-    /// `None` for an edge where the surface ends, and for all edges of a triangle that was removed or never
-    /// existed.
+    /// `None` for an edge where the surface ends, and for all edges of a triangle that was removed or never existed.
     ///
     /// Triangles are neighbours if they share two vertices. Vertices that the build kept apart
     /// ([`BuildReport::cracks`](super::BuildReport::cracks)) are not shared, so the surface ends there. Neighbours

@@ -10,8 +10,7 @@ use crate::testing::{
 };
 use glam::DVec3;
 
-/// 700 triangles, each of nearby vertices that follow `influences` of [`JOINTS`] joints: enough for nodes above
-/// nodes.
+/// 700 triangles, each of nearby vertices that follow `influences` of [`JOINTS`] joints: enough for nodes above nodes.
 fn many_clusters(rng: &mut fastrand::Rng, influences: usize) -> ColliderMesh {
     let size = [1e-3, 1.0, 1e3][rng.usize(0..3)];
     let offset = direction(rng) * [0.0, 1.0, 1e3][rng.usize(0..3)];

@@ -8,8 +8,7 @@ use crate::geometry::Affine;
 /// One matrix per joint that maps mesh space at rest to model space now: `model_from_joint * joint_from_mesh`.
 /// Skinning reads it.
 ///
-/// Comes from [`crate::rig::Skeleton::palette`], or from the matrices of an engine through
-/// [`Palette::from_matrices`].
+/// Comes from [`crate::rig::Skeleton::palette`], or from the matrices of an engine through [`Palette::from_matrices`].
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "StoredPalette"))]

@@ -48,10 +48,9 @@ pub(super) fn key_of(handle: ColliderHandle) -> u64 {
 /// from both sides; convex shapes are solid. A custom shape is seen by its support map or by its parts, and otherwise
 /// by rays only. Ray casts are rapier's own: a ray that exactly meets an edge between two triangles may slip through.
 ///
-/// The skin patches of [`Debris`](crate::Debris) are colliders of the world. Without a filter, a climber
-/// touches that skin twice: here, and on the creature itself. Leave the patches out with
-/// [`RapierTerrain::with_filter`], by [`DebrisConfig::groups`](crate::DebrisConfig::groups) or by
-/// [`Debris::triangle_at`](crate::Debris::triangle_at).
+/// The skin patches of [`Debris`](crate::Debris) are colliders of the world. Without a filter, a climber touches that
+/// skin twice: here, and on the creature itself. Leave the patches out with [`RapierTerrain::with_filter`], by
+/// [`DebrisConfig::groups`](crate::DebrisConfig::groups) or by [`Debris::triangle_at`](crate::Debris::triangle_at).
 ///
 /// In sweeps, each point of a body moves in a straight line from its position in [`BodyPoses`] to its current one. If
 /// the body turns by an angle in a tick, a point at the distance r from the axis is off its arc by up to

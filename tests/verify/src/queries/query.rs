@@ -62,8 +62,7 @@ impl FileQuery {
         })
     }
 
-    /// The radius for a sweep: 1e-5 of the extent, which is the largest side of the bounding box of all
-    /// points.
+    /// The radius for a sweep: 1e-5 of the extent, which is the largest side of the bounding box of all points.
     pub fn radius(&self) -> f32 {
         (self.extent * REACH) as f32
     }

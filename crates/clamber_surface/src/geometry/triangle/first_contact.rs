@@ -1,5 +1,4 @@
-//! First contact of a moving triangle with a moving sphere or capsule, by directional conservative
-//! advancement.
+//! First contact of a moving triangle with a moving sphere or capsule, by directional conservative advancement.
 //!
 //! All corners move on straight lines, and so do the ends of the core: the sphere's centre, or the two ends of the
 //! capsule's segment. For a fixed direction n, |n| <= 1, the gap `s(t) = min n.(p_j(t) - a_i(t))` over ends p_j and

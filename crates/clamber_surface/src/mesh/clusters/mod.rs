@@ -36,8 +36,7 @@ pub(crate) const BLOCK: usize = 32;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Row(pub(crate) [f32; ROW]);
 
-/// The corners of [`BLOCK`] triangles, as slots of their cluster. After the cluster's last triangle, all corners
-/// are 0.
+/// The corners of [`BLOCK`] triangles, as slots of their cluster. After the cluster's last triangle, all corners are 0.
 #[repr(C, align(32))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CornerBlock(pub(crate) [[u8; BLOCK]; 3]);
@@ -48,9 +47,8 @@ pub(crate) struct Cluster {
     pub(crate) part: PartId,
     /// Index of its first row of slots.
     pub(crate) first_row: u32,
-    /// Index of the first of its `rows * (3 + joints)` rows of rest data. Every sixteen slots take 3 + joints rows:
-    /// x, y and z, then the weights of the first joint, of the second, and so on. Unused slots repeat the first
-    /// slot.
+    /// Index of the first of its `rows * (3 + joints)` rows of rest data. Every sixteen slots take 3 + joints rows: x,
+    /// y and z, then the weights of the first joint, of the second, and so on. Unused slots repeat the first slot.
     pub(crate) first_rest: u32,
     pub(crate) first_joint: u32,
     pub(crate) first_block: u32,

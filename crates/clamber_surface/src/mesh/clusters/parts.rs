@@ -7,9 +7,8 @@ use super::split::{Splitter, area, ascending_bits, principal_axes};
 use super::tree::{Branch, Fork};
 use crate::mesh::summary::Summary;
 
-/// The smallest share of the triangles that either side of a cut gets. If one large part prevents this, the cut is
-/// made beside that part, which then stands alone two cuts later. So the tree is at most `2 log2(triangles) + 2`
-/// deep.
+/// The smallest share of the triangles that either side of a cut gets. If one large part prevents this, the cut is made
+/// beside that part, which then stands alone two cuts later. So the tree is at most `2 log2(triangles) + 2` deep.
 const LEAST_SHARE: f64 = 0.3;
 
 /// The most places per sort order at which a cut is tried.

@@ -93,8 +93,7 @@ fn stretches_and_area_of_pure_scale() {
 
 #[test]
 fn shear_turns_the_frame_by_half_its_angle_only() {
-    // A triangle in the XZ plane, sheared in its plane; the nearest rotation of [[1, s], [0, 1]]
-    // turns by atan(s / 2).
+    // A triangle in the XZ plane, sheared in its plane; the nearest rotation of [[1, s], [0, 1]] turns by atan(s / 2).
     let corners = [Vec3::ZERO, Vec3::Z, Vec3::X];
     for s in [0.01f32, 0.5, 3.0] {
         let sheared = [Vec3::ZERO, Vec3::Z, Vec3::X + Vec3::Z * s];
