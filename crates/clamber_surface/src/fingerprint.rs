@@ -35,6 +35,7 @@ impl Fingerprint {
     }
 
     /// Adds 64 bits.
+    #[inline]
     pub fn word(&mut self, word: u64) {
         let [turn, other] = self.0;
         self.0 = [other, fold(turn, word)];
@@ -59,11 +60,16 @@ impl Fingerprint {
     }
 
     /// Adds bytes, eight at a time. Their count is not added.
+    #[inline]
     pub fn bytes(&mut self, bytes: &[u8]) {
-        for chunk in bytes.chunks(8) {
-            let mut word = [0; 8];
-            word[..chunk.len()].copy_from_slice(chunk);
-            self.word(u64::from_le_bytes(word));
+        let (words, rest) = bytes.as_chunks();
+        for word in words {
+            self.word(u64::from_le_bytes(*word));
+        }
+        if !rest.is_empty() {
+            // Not a copy into an array, which would call `memcpy` for each number of a serialised state.
+            let last = rest.iter().rev();
+            self.word(last.fold(0, |word, byte| word << 8 | u64::from(*byte)));
         }
     }
 

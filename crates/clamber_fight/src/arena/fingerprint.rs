@@ -186,6 +186,7 @@ struct Hasher<const N: usize>([Fingerprint; N]);
 impl<const N: usize> Flavor for Hasher<N> {
     type Output = [Fingerprint; N];
 
+    #[inline]
     fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
         for hash in &mut self.0 {
             hash.bytes(bytes);
@@ -193,6 +194,7 @@ impl<const N: usize> Flavor for Hasher<N> {
         Ok(())
     }
 
+    #[inline]
     fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
         for hash in &mut self.0 {
             hash.word(u64::from(byte));
