@@ -125,9 +125,20 @@ mod tests {
 
     #[test]
     fn bytes_are_the_same_as_their_words() {
-        let word = 0x0123_4567_89ab_cdef_u64;
-        let bytes = hash(|hash| hash.bytes(&word.to_le_bytes()));
-        assert_eq!(bytes, hash(|hash| hash.word(word)));
+        let all: [u8; 24] = std::array::from_fn(|index| 0xa1 + index as u8);
+        for length in 0..=all.len() {
+            let bytes = &all[..length];
+            let found = hash(|hash| hash.bytes(bytes));
+            // The last word is filled up with zeros.
+            let mut filled = [0; 24];
+            filled[..length].copy_from_slice(bytes);
+            let words = hash(|hash| {
+                for word in filled.chunks(8).take(length.div_ceil(8)) {
+                    hash.word(u64::from_le_bytes(word.try_into().unwrap()));
+                }
+            });
+            assert_eq!(found, words, "{length}");
+        }
     }
 
     /// Hashes are stored in files, so they must not change.

@@ -73,14 +73,14 @@ fn sum(earlier: Option<ClimberBlow>, later: ClimberBlow) -> ClimberBlow {
         let damages = [earlier.damage, later.damage];
         // The climber refuses NaN, as it would have refused the one that is out of range.
         let are_sane = damages.iter().all(|damage| (0.0..=1.0).contains(damage));
-        let sum = if are_sane {
+        let damage = if are_sane {
             damages.iter().sum::<f32>().min(1.0)
         } else {
             f32::NAN
         };
         ClimberBlow {
             velocity: earlier.velocity + later.velocity,
-            damage: sum,
+            damage,
             by: later.by.or(earlier.by),
         }
     })

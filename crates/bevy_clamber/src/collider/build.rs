@@ -190,7 +190,7 @@ fn set(status: &mut Mut<'_, ColliderStatus>, to: ColliderStatus) {
 /// How long a collider may wait before what it waits for is logged.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// If a collider waits for long, logs once what it waits for.
+/// Logs once which data a collider lacks, if it has waited for longer than [`PATIENCE`].
 pub(crate) fn tell_waiting(
     colliders: Query<(Entity, Ref<ColliderStatus>)>,
     time: Res<Time<Real>>,

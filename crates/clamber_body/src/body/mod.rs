@@ -127,7 +127,7 @@ impl Body {
         limb.hold().map(|hold| &hold.attachment)
     }
 
-    /// The point of a hand or foot with which it touches what it is on, in world space, metres, in the pose of the last
+    /// The point at which a hand or foot touches its hold or its ground, in world space, metres, in the pose of the last
     /// update: the middle of a palm, or the part of a foot that is down: the sole below the ankle, the heel, the ball
     /// or the toes. A hand or foot in the air has such a point, too; [`Body::hold`] tells whether it is on anything.
     /// `None` before the first update, and from [`Body::reset`] until the next one.

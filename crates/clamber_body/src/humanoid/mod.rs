@@ -82,7 +82,7 @@ pub struct Limb {
     pub lengths: [f64; 2],
 }
 
-/// What stands for the hand or foot at the end of a limb in the skeleton: a joint below the limb, a joint elsewhere, or
+/// How the skeleton gives the hand or foot at the end of a limb: as a joint below the limb, as a joint elsewhere, or as
 /// a mere point. It does not tell a hand from a foot: an arm ends in a hand, a leg in a foot.
 /// [`Extremity`](crate::Extremity) names one of the four hands and feet.
 #[derive(Clone, Copy, Debug, PartialEq)]

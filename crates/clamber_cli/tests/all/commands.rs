@@ -57,8 +57,8 @@ fn clamber(arguments: &[&str]) -> Output {
     command.args(arguments).output().unwrap()
 }
 
-/// Runs `clamber` with arguments, and checks that it exits with `code`. Returns what it wrote to standard error if
-/// `code` is 2, which stands for an error, and what it wrote to standard output otherwise.
+/// Runs `clamber` with arguments, and checks that it exits with `code`. Returns its standard error if `code` is 2, as
+/// after an error, and its standard output otherwise.
 fn said(arguments: &[&str], code: i32) -> String {
     let ended = clamber(arguments);
     let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();

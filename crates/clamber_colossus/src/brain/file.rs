@@ -110,11 +110,11 @@ pub struct TransitionFile {
     /// inner states, the creature enters its `start`.
     pub to: String,
     /// Conditions on senses and moods that must all hold, such as `"riders >= 1"` or `"!prey_seen"`; [the brain's
-    /// documentation](crate::brain) gives their form. An empty list always allows the transition.
+    /// documentation](crate::brain) gives their form. An empty list sets no condition.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub when: Vec<String>,
-    /// Conditions, as in `when`, of which at least one must hold. An empty list always allows the transition. If both
-    /// lists have conditions, the transition needs all of `when` and one of `any`.
+    /// Conditions, as in `when`, of which at least one must hold in addition to all of `when`. An empty list sets no
+    /// condition.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub any: Vec<String>,
     /// Name of a marker that the creature's clip must have passed in the last tick. Markers are times with names in a

@@ -32,7 +32,7 @@ impl Recorded {
 /// The contacts of one body with a climber.
 pub(super) type Impact = ProxyImpact<Entity, Entity>;
 
-/// The contacts of a pair of colliders, one of which stands for a climber; `None` if they do not touch. In avian's
+/// The contacts of a pair of colliders, of which one is a climber's proxy; `None` if they do not touch. In avian's
 /// space.
 pub(super) fn impact_of(pair: &ContactPair, stand_in: Entity) -> Option<Impact> {
     let (body, collider) = other(pair, stand_in)?;
