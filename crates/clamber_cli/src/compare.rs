@@ -198,8 +198,7 @@ fn arenas(
         if ours.orders != theirs.orders {
             return Ok(Comparison::OrdersDiffer { tick: ours.tick });
         }
-        let (all, parts) = (theirs.fingerprint, &theirs.parts);
-        if let Some(difference) = ArenaDifference::between(first.info(), &ours, all, parts) {
+        if let Some(difference) = ArenaDifference::between(first.info(), &ours, &theirs.parts) {
             return Ok(Comparison::ArenasDiffer(Box::new(difference)));
         }
         fighters.clear();

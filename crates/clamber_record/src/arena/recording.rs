@@ -23,8 +23,6 @@ pub struct RecordedArenaTick {
     pub inputs: Vec<ClimberInput>,
     /// The orders of that step.
     pub orders: Vec<Order>,
-    /// [`Arena::fingerprint`] at its end.
-    pub fingerprint: u64,
     /// [`Arena::part_fingerprints`] at its end.
     pub parts: Vec<(ArenaPart, u64)>,
 }
@@ -45,22 +43,19 @@ impl RecordedArenaTick {
 pub struct ArenaDifference {
     /// The tick as recorded.
     pub recorded: RecordedArenaTick,
-    /// Fingerprint of the arena as replayed.
-    pub fingerprint: u64,
     /// The parts that differ, each with its name.
     pub parts: Vec<(ArenaPart, String)>,
 }
 
 impl ArenaDifference {
-    /// Compares a recorded tick with the same tick of another run, given by [`Arena::fingerprint`] and
-    /// [`Arena::part_fingerprints`]. `None` if the fingerprints are equal. The parts get their names from `info`.
+    /// Compares a recorded tick with the same tick of another run, given by [`Arena::part_fingerprints`]. `None` if all
+    /// are equal. The parts get their names from `info`.
     pub fn between(
         info: &ArenaInfo,
         recorded: &RecordedArenaTick,
-        fingerprint: u64,
         parts: &[(ArenaPart, u64)],
     ) -> Option<Self> {
-        if fingerprint == recorded.fingerprint {
+        if parts == recorded.parts {
             return None;
         }
         let name = |part: ArenaPart| match part {
@@ -75,7 +70,6 @@ impl ArenaDifference {
         let differ: BTreeSet<ArenaPart> = differ.collect();
         Some(Self {
             recorded: recorded.clone(),
-            fingerprint,
             parts: differ.into_iter().map(|part| (part, name(part))).collect(),
         })
     }
@@ -86,11 +80,9 @@ impl fmt::Display for ArenaDifference {
         let names: Vec<&str> = self.parts.iter().map(|(_, name)| name.as_str()).collect();
         write!(
             f,
-            "tick {} differs: not the same {}; fingerprint {:016x} became {:016x}",
+            "tick {} differs: not the same {}",
             self.recorded.tick,
-            names.join(", "),
-            self.recorded.fingerprint,
-            self.fingerprint
+            names.join(", ")
         )
     }
 }
@@ -163,10 +155,9 @@ impl ArenaRecording {
                 step(arena, &recorded.inputs, &recorded.orders)?;
             }
             last = recorded.tick;
-            let all = arena.fingerprint();
-            if all != recorded.fingerprint {
-                let parts = arena.part_fingerprints();
-                replay.difference = ArenaDifference::between(self.info(), &recorded, all, &parts);
+            let parts = arena.part_fingerprints();
+            replay.difference = ArenaDifference::between(self.info(), &recorded, &parts);
+            if replay.difference.is_some() {
                 break;
             }
             replay.agreed += 1;
@@ -209,13 +200,19 @@ impl RecordingKind for OfArena {
         let fighters = tick.fighters.iter().copied().map(FighterId);
         let parts = creatures.map(ArenaPart::Creature);
         let parts = parts.chain(fighters.map(ArenaPart::Fighter));
-        let parts = parts.chain([ArenaPart::Rest]).zip(tick.parts);
+        let parts: Vec<ArenaPart> = parts.chain([ArenaPart::Rest]).collect();
+        if parts.len() != tick.parts.len() {
+            let [all, found] = [parts.len(), tick.parts.len()];
+            return Err(format!(
+                "fingerprints of {found} parts, but the arena has {all}"
+            ));
+        }
+        let parts = parts.into_iter().zip(tick.parts).collect();
         let recorded = RecordedArenaTick {
             tick: tick.tick,
             inputs: inputs.collect::<Result<_, _>>()?,
             orders,
-            fingerprint: tick.fingerprint,
-            parts: parts.collect(),
+            parts,
         };
         Ok((tick.tick, recorded))
     }

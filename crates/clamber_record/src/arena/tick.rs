@@ -71,18 +71,17 @@ impl TakenArena {
         arena: &Arena,
         (inputs, orders): (&[ClimberInput], &[Order]),
     ) -> Result<Self, RecordError> {
-        let (fingerprint, parts) = arena.fingerprints();
         let orders = match orders {
             [] => Vec::new(),
             orders => Order::to_bytes(orders)?,
         };
         let fighters = arena.fighters().iter();
+        let parts = arena.part_fingerprints().into_iter();
         Ok(Self {
             message: ArenaTick {
                 tick: arena.tick(),
                 inputs: inputs.iter().map(Mirror::of).collect(),
-                fingerprint,
-                parts: parts.into_iter().map(|(_, part)| part).collect(),
+                parts: parts.map(|(_, part)| part).collect(),
                 creatures: arena.creatures().map(|(id, _)| id.0).collect(),
                 fighters: fighters.map(|fighter| fighter.id().0).collect(),
                 orders: orders.into(),

@@ -40,16 +40,14 @@ message! {
         tick: u64 (uint64, tag = 1),
         /// One input for each fighter; empty before the first step.
         inputs: Vec<Input> (message, repeated, tag = 2),
-        /// Fingerprint of the whole arena.
-        fingerprint: u64 (uint64, tag = 3),
         /// Fingerprints of the creatures, of the fighters, and of the rest, in this order.
-        parts: Vec<u64> (uint64, repeated, tag = 4),
+        parts: Vec<u64> (uint64, repeated, tag = 3),
         /// Numbers of the creatures.
-        creatures: Vec<u32> (uint32, repeated, tag = 5),
+        creatures: Vec<u32> (uint32, repeated, tag = 4),
         /// Numbers of the fighters.
-        fighters: Vec<u32> (uint32, repeated, tag = 6),
+        fighters: Vec<u32> (uint32, repeated, tag = 5),
         /// The orders of the step, as `Order::to_bytes` writes them; empty if there are none.
-        orders: Bytes (bytes = "bytes", tag = 7),
+        orders: Bytes (bytes = "bytes", tag = 6),
     }
 }
 
