@@ -53,8 +53,8 @@ pub struct GoldenRun {
 /// first difference from the stored file. With the environment variable `CLAMBER_BLESS`, first stores the file.
 ///
 /// # Errors
-/// A message if the hashes differ, with the first difference; if the file belongs to another hash; or if it cannot be
-/// read or written.
+/// A message if the hashes differ, with the first difference, or, if the file was just stored, with the new hash and
+/// all fields that have changed; if the file belongs to another hash; or if it cannot be read or written.
 pub fn hold(
     file: impl AsRef<Path>,
     hash: u64,
@@ -63,8 +63,16 @@ pub fn hold(
     let file = file.as_ref();
     let named = |error: std::io::Error| format!("{}: {error}", file.display());
     if std::env::var_os("CLAMBER_BLESS").is_some() {
-        let bytes = GoldenRun::detailed(&play).to_bytes();
-        std::fs::write(file, bytes).map_err(named)?;
+        let run = GoldenRun::detailed(&play);
+        let changes = run.changes(&std::fs::read(file).unwrap_or_default());
+        std::fs::write(file, run.to_bytes()).map_err(named)?;
+        if run.hash() != hash {
+            return Err(format!(
+                "{} is stored; {changes}. If this is intended, copy the hash {:#018x} into the test",
+                file.display(),
+                run.hash(),
+            ));
+        }
     }
     let stored = std::fs::read(file).map_err(named)?;
     let mut run = GoldenRun::default();
@@ -182,11 +190,9 @@ impl GoldenRun {
         if ours == stored {
             return None;
         }
-        let names = ours.len() - 2 * self.checksums.len();
-        if stored.get(..names) != ours.get(..names) {
+        let Some(theirs) = self.checksums_in(stored) else {
             return Some("the stored run has other fields".into());
-        }
-        let theirs = stored[names..].as_chunks::<2>().0;
+        };
         let wanted = |index: usize| theirs.get(index).map(|sum| u16::from_le_bytes(*sum));
         let fields = self.names.len().max(1);
         for (tick, row) in self.checksums.chunks(fields).enumerate() {
@@ -201,6 +207,40 @@ impl GoldenRun {
             }
         }
         Some(format!("the stored run goes on after tick {}", self.ticks))
+    }
+
+    /// The checksums of a stored file without its first line; `None` if it has other fields than this run.
+    fn checksums_in<'a>(&self, stored: &'a [u8]) -> Option<&'a [[u8; 2]]> {
+        let ours = self.table();
+        let (names, _) = ours.split_at(ours.len() - 2 * self.checksums.len());
+        Some(stored.strip_prefix(names)?.as_chunks::<2>().0)
+    }
+
+    /// A message about all fields in which this detailed run differs from a stored one, each with its number of ticks.
+    pub fn changes(&self, stored: &[u8]) -> String {
+        let stored = stored.get(head(0).len()..).unwrap_or_default();
+        let Some(theirs) = self.checksums_in(stored) else {
+            return "its fields are others now".into();
+        };
+        let fields = self.names.len().max(1);
+        if theirs.len() != self.checksums.len() {
+            let before = theirs.len() / fields;
+            return format!("it had {before} ticks, and has {} now", self.ticks);
+        }
+        let mut ticks = vec![0; fields];
+        for (index, (ours, theirs)) in self.checksums.iter().zip(theirs).enumerate() {
+            ticks[index % fields] += usize::from(ours.to_le_bytes() != *theirs);
+        }
+        let changed = self.names.iter().zip(ticks).filter(|(_, ticks)| *ticks > 0);
+        let changed: Vec<String> = changed
+            .map(|(name, ticks)| format!("{name} ({ticks})"))
+            .collect();
+        format!(
+            "{} of {fields} fields changed in {} ticks: {}",
+            changed.len(),
+            self.ticks,
+            changed.join(", ")
+        )
     }
 }
 
@@ -249,8 +289,11 @@ mod tests {
         assert_eq!(told, "the first difference is at tick 0, in body inner");
         // Only numbers that `field` adds change the hash.
         assert_eq!(other.hash(), first.hash());
-        let told = run(&value(1.5, [-0.0, 1.0])).difference(&stored).unwrap();
+        let other = run(&value(1.5, [-0.0, 1.0]));
+        let told = other.difference(&stored).unwrap();
         assert_eq!(told, "the first difference is at tick 0, in body place");
+        let told = other.changes(&stored);
+        assert_eq!(told, "1 of 4 fields changed in 1 ticks: body place (1)");
     }
 
     #[test]

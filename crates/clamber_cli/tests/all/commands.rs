@@ -439,6 +439,37 @@ fn the_giant_can_be_climbed() {
         let found = point["seconds"].as_f64().unwrap();
         assert!((found - seconds).abs() < 1.0, "{point}: {seconds}");
     }
+    // The recipe shows the same numbers.
+    let recipe = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../docs/recipes/climbability.md"
+    );
+    let recipe = std::fs::read_to_string(recipe).unwrap();
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let mut shown: Vec<String> = [
+        ("skin", "area"),
+        ("  can be gripped", "grip_area"),
+        ("  can be stood on", "stand_area"),
+        ("  reachable", "reachable_area"),
+        ("  to rest on", "rest_area"),
+    ]
+    .map(|(row, name)| format!("{row:17} {:9.1} m2", number(&report[name])))
+    .into();
+    for point in report["weak_points"].as_array().unwrap() {
+        let [seconds, stamina] = ["seconds", "stamina"].map(|key| number(&point[key]));
+        let name = point["name"].as_str().unwrap();
+        let left = 100.0 * stamina;
+        shown.push(format!(
+            "reached in {seconds:.1} s with {left:.0} % of its strength left"
+        ));
+        assert!(recipe.contains(name), "{name}");
+    }
+    for line in shown {
+        assert!(
+            recipe.contains(&line),
+            "docs/recipes/climbability.md has no {line:?}"
+        );
+    }
     // On fur alone there is no way up, as the giant wears belts of stone.
     let ended = clamber(&["climbability", giant, "--require", "weak_points=3"]);
     assert_eq!(ended.status.code(), Some(1));

@@ -454,7 +454,17 @@ impl Arena {
                     one.rest_mut().arrows = has.saturating_add(*arrows);
                 }
             }
-            _ => {}
+            // Listed, so that a new kind of order cannot be ignored by oversight.
+            Order::AddFighter { .. }
+            | Order::AddCreature { .. }
+            | Order::RemoveCreature { .. }
+            | Order::RemoveProjectile { .. }
+            | Order::Noise(_)
+            | Order::Sense { .. }
+            | Order::Send { .. }
+            | Order::Enter { .. }
+            | Order::PlaceCreature { .. }
+            | Order::Harm { .. } => {}
         }
         Ok(true)
     }
@@ -483,7 +493,19 @@ impl Arena {
                     });
                 }
             }
-            _ => {}
+            Order::AddFighter { .. }
+            | Order::AddCreature { .. }
+            | Order::RemoveFighter { .. }
+            | Order::RemoveCreature { .. }
+            | Order::RemoveProjectile { .. }
+            | Order::Hurt { .. }
+            | Order::Heal { .. }
+            | Order::Strike { .. }
+            | Order::PlaceFighter { .. }
+            | Order::Checkpoint { .. }
+            | Order::Rise { .. }
+            | Order::AddArrows { .. }
+            | Order::Noise(_) => {}
         }
         Ok(is_done)
     }

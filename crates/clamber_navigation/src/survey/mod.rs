@@ -134,7 +134,7 @@ impl Survey {
         arms::arm_between([from, to], arms, enough, &arm_at)
     }
 
-    /// True if a climber can stand on a piece at rest.
+    /// True if a climber can stand on a piece at rest. Pieces on edges, whose area is 0, are among them.
     pub(crate) fn can_stand(&self, piece: usize) -> bool {
         let piece = &self.pieces[piece];
         piece.seat.is_some() && self.slope(piece) <= self.config.climber.ground.max_slope

@@ -427,8 +427,9 @@ fn the_table_in_markdown() {
     println!("{table}");
 }
 
-/// Declares the tests of known failures, of other engines and of this one, which are played in every setting, too.
-macro_rules! failures {
+/// Declares the tests that are played in every setting, but have no other controller as their source: known failures of
+/// other engines, and everything that this crate adds.
+macro_rules! own {
     ($($group:ident::$test:ident),+ $(,)?) => {
         $(
             #[test]
@@ -442,7 +443,7 @@ macro_rules! failures {
     };
 }
 
-failures! {
+own! {
     failures::rapier_488_falling_through_a_rising_lift,
     failures::shock2quest_666_dragged_along_a_brushed_wall,
     failures::godot_46604_drift_on_a_rotating_platform,
