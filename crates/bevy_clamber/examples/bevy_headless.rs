@@ -169,7 +169,9 @@ fn app() -> App {
     ))
     .init_asset::<Mesh>()
     .init_asset::<SkinnedMeshInverseBindposes>()
-    .insert_resource(ClimberRule::new(|at| at.usual().with_grip(true)))
+    .insert_resource(DefaultClimberRule(ClimberRule::new(|at| {
+        at.usual().with_grip(true)
+    })))
     .init_resource::<Happened>()
     .add_observer(|what: On<ClimberLanded>, mut happened: ResMut<Happened>| {
         let landed = format!("landed at {:.1} m/s", what.speed);

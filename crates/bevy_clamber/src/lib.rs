@@ -27,6 +27,7 @@ mod plugins;
 pub mod prelude;
 mod query;
 mod surface;
+mod tell;
 
 pub use anchor::{
     AnchorError, AnchorLost, AnchoredTo, SurfaceAnchor, SurfaceAnchorPlugin, SurfaceAnchors,
@@ -36,9 +37,12 @@ pub use arena::{
     ArenaCreature, ArenaFighter, ArenaPlugin, ArenaProjectile, ArenaTerrain, FightArena, FightEvent,
 };
 pub use camera::{ClimberCamera, ClimberCameraInput, ClimberCameraPlugin};
+#[cfg(feature = "colossus")]
+pub use climber::TerrainId;
 pub use climber::{
     AirVelocity, Climber, ClimberBlow, ClimberBody, ClimberFilter, ClimberInput, ClimberModes,
-    ClimberPlugin, ClimberRule, ClimberState, ClimberTouch, CustomObstacle, events,
+    ClimberPlugin, ClimberRule, ClimberState, ClimberTouch, CustomObstacle, DefaultClimberRule,
+    events,
 };
 pub use collider::{
     ColliderError, ColliderFailure, ColliderNeeds, ColliderStatus, ColliderTag, SkinnedCollider,
@@ -50,7 +54,9 @@ pub use colossus::{
     ColossusStaggered, ColossusStruck, ColossusThrew, ColossusWave,
 };
 #[cfg(feature = "input")]
-pub use controls::{ClimberControls, ClimberControlsPlugin};
+pub use controls::{
+    ClimberControls, ClimberControlsPlugin, ControlBindings, ControlButton, ControlDevice,
+};
 #[cfg(feature = "clamber_gltf")]
 pub use creature::{
     RigAssets, RigJoints, RigMarkerPassed, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig,
@@ -59,7 +65,9 @@ pub use creature::{
 #[cfg(feature = "diagnostics")]
 pub use diagnostics::SurfaceDiagnosticsPlugin;
 #[cfg(feature = "clamber_gltf")]
-pub use figure::{ClimberFigure, ClimberFigurePlugin, ClimberPlant, WrongJoints};
+pub use figure::{
+    ClimberFigure, ClimberFigurePlugin, ClimberFigures, ClimberPlant, FigureOf, WrongJoints,
+};
 #[cfg(feature = "gizmos")]
 pub use gizmos::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "avian")]

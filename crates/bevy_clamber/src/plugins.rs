@@ -47,6 +47,8 @@ impl PluginGroup for ClamberPlugins {
 /// list, as long as every plugin keeps its default schedule.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClamberSystems {
+    /// In `PreUpdate`, after Bevy's `InputSystems`: `ClimberControls` fill the inputs of climbers and cameras.
+    Input,
     /// In `PreUpdate`: colliders are built from mesh assets, surfaces are inserted and removed.
     Build,
     /// In the schedule of `RigPlayerPlugin`, `FixedUpdate` by default, before [`ClamberSystems::Pose`]: rigs that

@@ -6,8 +6,8 @@ pub use crate::{
     AirVelocity, AnchorLost, ClamberPlugins, ClamberSystems, Climber, ClimberBlow, ClimberBody,
     ClimberCamera, ClimberCameraInput, ClimberCameraPlugin, ClimberFilter, ClimberInput,
     ClimberModes, ClimberPlugin, ClimberRule, ClimberState, ColliderStatus, ColliderTag,
-    CustomObstacle, DrawnSurfaceQuery, EntityHit, PoseTiming, PosedSurface, SkinnedCollider,
-    SurfaceAnchor, SurfaceFilter, SurfaceQuery, WorldOrigin,
+    CustomObstacle, DefaultClimberRule, DrawnSurfaceQuery, EntityHit, PoseTiming, PosedSurface,
+    SkinnedCollider, SurfaceAnchor, SurfaceFilter, SurfaceQuery, WorldOrigin,
 };
 #[cfg(feature = "fight")]
 pub use crate::{
@@ -26,7 +26,7 @@ pub use crate::{
 pub use crate::{
     Colossus, ColossusBody, ColossusBrain, ColossusBurst, ColossusEntered, ColossusHurt,
     ColossusMarker, ColossusNoise, ColossusPlanted, ColossusPlugin, ColossusStaggered,
-    ColossusStruck, ColossusThrew, ColossusWave,
+    ColossusStruck, ColossusThrew, ColossusWave, TerrainId,
 };
 #[cfg(feature = "rapier")]
 pub use crate::{Debris, DebrisPlugin, RapierProxy, RapierProxyPlugin};

@@ -1,3 +1,4 @@
+use bevy_ecs::entity::Entity;
 use bevy_ecs::system::SystemParam;
 use clamber_world::{Obstacle, ObstacleId};
 
@@ -24,8 +25,15 @@ pub struct ArenaTerrain<'w, 's> {
 }
 
 impl ArenaTerrain<'_, '_> {
-    /// Calls `step` with the terrain, by ascending id. The id of a `CustomObstacle` is the bits of its entity.
+    /// Calls `step` with the terrain, by ascending id. A [`CustomObstacle`](crate::CustomObstacle) has the id of its
+    /// [`TerrainId`](crate::TerrainId); without one, an id above all of these, in the order of spawning.
     pub fn with<T>(&self, step: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T) -> T {
         self.touchable.terrain_by_id(step)
+    }
+
+    /// The entity of the [`CustomObstacle`](crate::CustomObstacle) with an id, as the arena's states and events have
+    /// it; `None` for everything else.
+    pub fn entity(&self, id: ObstacleId) -> Option<Entity> {
+        self.touchable.numbered(id)
     }
 }

@@ -1,3 +1,4 @@
+use bevy_ecs::change_detection::Tick;
 use bevy_ecs::entity::{EntityMapper, MapEntities};
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::ReflectMapEntities;
@@ -73,8 +74,10 @@ impl Default for Climber {
 /// All that a [`Climber`] remembers, as of the last tick: position, velocity, mode, support, stamina and more. Inserted
 /// by its first tick.
 ///
-/// To load a saved state, or to roll back, write it: the next tick goes on from there. A state that is refused is
-/// logged, and the last one stays. An entity that is spawned with a state starts with it.
+/// To load a saved state, or to roll back, write it: the next tick goes on from there. The state says where the climber
+/// is: a `Transform` that is written beside it, as saved with it, is no teleport. If only other fields than the position
+/// are written, such as hit points, a `Transform` elsewhere is one as usual. A state that is refused is logged, and the
+/// last one stays. An entity that is spawned with a state starts with it.
 ///
 /// The support's obstacle id is the bits of an entity. Where Bevy maps entities, as when it loads a scene, it is
 /// mapped. On a physics engine's world, avian's colliders are mapped; rapier numbers its own anew, so that support may
@@ -113,6 +116,7 @@ impl Deref for ClimberState {
 pub struct ClimberFilter {
     /// Entities that it passes through: surfaces, climbers, [`CustomObstacle`](crate::CustomObstacle)s, and colliders
     /// of avian.
+    #[entities]
     pub ignored: HashSet<Entity>,
     /// The layers of the physics engine that it touches, one bit each: avian's `LayerMask`, rapier's `Group`. All by
     /// default.
@@ -136,6 +140,8 @@ pub struct ClimberBody {
     /// The mesh of the surface that supports it.
     pub(super) support_mesh: Option<(ObstacleId, MeshId)>,
     pub(super) shown: Shown,
+    /// When this crate has written the climber's [`ClimberState`].
+    pub(super) written: Tick,
     /// The last drawn place: the transform that this crate has written, and the origin that it is relative to.
     pub(super) drawn: Transform,
     pub(super) origin: DVec3,

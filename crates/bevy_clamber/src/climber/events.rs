@@ -6,6 +6,9 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use clamber_climber::{ClimberEvent, ClimberMode};
 use clamber_world::{Attachment, ObstacleId};
+use glam::DVec3;
+
+use crate::tell::tell;
 
 macro_rules! events {
     ($($(#[$doc:meta])* $name:ident { $($(#[$about:meta])* $field:ident: $type:ty,)* })*) => {
@@ -64,7 +67,7 @@ events! {
     ClimberGrabbed {
         /// The entity that it grips.
         hold: Option<Entity>,
-        /// The gripped point.
+        /// The gripped point, in Bevy's world space.
         point: Vec3,
     }
     /// A climber climbed around a corner, convex or concave.
@@ -76,7 +79,7 @@ events! {
     ClimberCaughtLedge {
         /// The entity that the ledge is part of.
         ledge: Option<Entity>,
-        /// The point that its hands hold.
+        /// The point that its hands hold, in Bevy's world space.
         point: Vec3,
     }
     /// A climber's hands slipped off a hold or a ledge: it passed too fast, or stamina did not suffice.
@@ -147,21 +150,12 @@ events! {
 pub(super) struct Told<'a> {
     pub(super) entity: Entity,
     pub(super) hit_points: f64,
+    /// The [`WorldOrigin`](crate::WorldOrigin).
+    pub(super) origin: DVec3,
     /// The entity that an obstacle is, or that was touched in its world.
     pub(super) touched: &'a dyn Fn(ObstacleId) -> Option<Entity>,
     /// The entity that a point of an obstacle belongs to.
     pub(super) supports: &'a dyn Fn(&Attachment) -> Option<Entity>,
-}
-
-/// Triggers an event, and writes it as a message, when commands are applied.
-fn tell<E>(commands: &mut Commands<'_, '_>, event: E)
-where
-    E: Message + Copy + for<'a> EntityEvent<Trigger<'a>: Default>,
-{
-    commands.queue(move |world: &mut World| {
-        world.write_message(event);
-        world.trigger(event);
-    });
 }
 
 /// Tells one event of a climber.
@@ -207,7 +201,7 @@ pub(super) fn tell_event(event: &ClimberEvent, told: &Told<'_>, commands: &mut C
             ClimberGrabbed {
                 entity,
                 hold: touched(obstacle),
-                point: point.as_vec3(),
+                point: (*point - told.origin).as_vec3(),
             },
         ),
         ClimberEvent::TurnedCorner { angle } => tell(
@@ -222,7 +216,7 @@ pub(super) fn tell_event(event: &ClimberEvent, told: &Told<'_>, commands: &mut C
             ClimberCaughtLedge {
                 entity,
                 ledge: touched(obstacle),
-                point: point.as_vec3(),
+                point: (*point - told.origin).as_vec3(),
             },
         ),
         ClimberEvent::HandsSlipped { obstacle, speed } => tell(

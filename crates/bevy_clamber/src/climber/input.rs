@@ -1,3 +1,4 @@
+use bevy_ecs::entity::MapEntities;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
@@ -10,8 +11,9 @@ use clamber_world::ObstacleId;
 ///
 /// Directions are used as they are at each tick. A press of `jump` is kept until a tick comes, and only that tick gets
 /// it, however many frames there are in a tick, or ticks in a frame; it is then set to false. A button that is down in
-/// any frame since the last tick counts as down in the next one, so that a short tap is not lost. Presses while
-/// the game is paused are forgotten.
+/// any frame since the last tick counts as down in the next one, so that a short tap is not lost. Presses and blows
+/// while the game is paused are forgotten, however it is paused: `Time<Virtual>` stands still, or ticks pass without
+/// [`ClamberSystems::Climb`](crate::ClamberSystems::Climb).
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 pub struct ClimberInput {
@@ -40,11 +42,12 @@ pub struct ClimberInput {
     pub aim: Vec3,
     /// The blows that struck the climber since the last tick, as one; see [`ClimberInput::strike`]. The fighter of an
     /// arena ignores it.
+    #[entities]
     pub blow: Option<ClimberBlow>,
 }
 
 /// A blow that strikes a climber.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect, MapEntities)]
 #[reflect(Default, Clone, Debug, PartialEq)]
 pub struct ClimberBlow {
     /// Change of the climber's velocity, in world space, metres a second.
@@ -53,6 +56,7 @@ pub struct ClimberBlow {
     /// [`ClimberConfig::health`](clamber_climber::ClimberConfig::health).
     pub damage: f32,
     /// The dealer of the blow. Events repeat it.
+    #[entities]
     pub by: Option<Entity>,
 }
 
@@ -135,14 +139,41 @@ impl LatchedInput {
     }
 }
 
+/// The ticks since the last frame.
+#[derive(Resource, Clone, Copy, Debug, Default)]
+pub(crate) struct PassedTicks {
+    /// A tick has passed.
+    any: bool,
+    /// One of them has stepped climbers, or an arena.
+    climbed: bool,
+}
+
+/// Runs in each tick.
+pub(super) fn count_ticks(mut passed: ResMut<PassedTicks>) {
+    passed.any = true;
+}
+
+/// Runs in each tick that steps climbers.
+pub(super) fn count_climbs(mut passed: ResMut<PassedTicks>) {
+    passed.climbed = true;
+}
+
 /// Runs once a frame, before the fixed loop.
 pub(super) fn latch(
     time: Res<Time<Virtual>>,
+    mut passed: ResMut<PassedTicks>,
     mut climbers: Query<(&mut ClimberInput, &mut LatchedInput)>,
 ) {
+    let passed = std::mem::take(&mut *passed);
+    // The ticks since the last frame have not taken what was latched before it.
+    let was_paused = passed.any && !passed.climbed;
+    let is_paused = time.is_paused() || time.effective_speed_f64() == 0.0;
     for (mut input, mut latched) in &mut climbers {
+        if was_paused {
+            *latched = LatchedInput::default();
+        }
         latched.latch(input.bypass_change_detection());
-        if time.is_paused() {
+        if is_paused {
             *latched = LatchedInput::default();
         }
     }

@@ -9,6 +9,8 @@ mod plugin;
 mod rules;
 mod shown;
 mod step;
+#[cfg(feature = "colossus")]
+mod terrain_id;
 
 pub use component::{Climber, ClimberBody, ClimberFilter, ClimberState};
 #[cfg(feature = "fight")]
@@ -23,4 +25,6 @@ pub(crate) use obstacles::RAPIER;
 #[cfg(feature = "colossus")]
 pub(crate) use obstacles::Touchable;
 pub use plugin::ClimberPlugin;
-pub use rules::{AirVelocity, ClimberModes, ClimberRule, ClimberTouch};
+pub use rules::{AirVelocity, ClimberModes, ClimberRule, ClimberTouch, DefaultClimberRule};
+#[cfg(feature = "colossus")]
+pub use terrain_id::TerrainId;

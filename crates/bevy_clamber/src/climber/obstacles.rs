@@ -18,6 +18,8 @@ use clamber_world::{
 use glam::DVec3;
 
 use super::component::ClimberFilter;
+#[cfg(feature = "colossus")]
+use super::terrain_id::{SpawnNumber, TerrainId, terrain_obstacle};
 #[cfg(any(feature = "avian", feature = "rapier"))]
 use crate::WorldOrigin;
 #[cfg(feature = "avian")]
@@ -43,6 +45,7 @@ use crate::{DrawnSurface, PosedSurface};
 /// }
 /// ```
 #[derive(Component)]
+#[cfg_attr(feature = "colossus", component(on_add = super::terrain_id::number))]
 pub struct CustomObstacle(Box<dyn AnyObstacle>);
 
 /// An obstacle that can be taken back out of its box.
@@ -98,6 +101,8 @@ pub(super) fn map_entities(on: &mut Attachment, mapper: &mut impl EntityMapper) 
 pub(crate) struct Touchable<'w, 's> {
     surfaces: Query<'w, 's, (Entity, &'static PosedSurface)>,
     custom: Query<'w, 's, (Entity, &'static CustomObstacle)>,
+    #[cfg(feature = "colossus")]
+    numbers: Query<'w, 's, (Option<&'static TerrainId>, Option<&'static SpawnNumber>)>,
     #[cfg(any(feature = "avian", feature = "rapier"))]
     origin: Res<'w, WorldOrigin>,
     #[cfg(feature = "avian")]
@@ -217,6 +222,20 @@ impl Touchable<'_, '_> {
         })
     }
 
+    /// The id of an obstacle of the app in a fight.
+    #[cfg(feature = "colossus")]
+    fn number(&self, entity: Entity) -> Option<ObstacleId> {
+        let (given, spawned) = self.numbers.get(entity).ok()?;
+        terrain_obstacle(given, spawned)
+    }
+
+    /// The obstacle of the app with this id in a fight.
+    #[cfg(feature = "fight")]
+    pub(crate) fn numbered(&self, id: ObstacleId) -> Option<Entity> {
+        let mut all = self.custom.iter().map(|(entity, _)| entity);
+        all.find(|entity| self.number(*entity) == Some(id))
+    }
+
     /// Calls `look` with the terrain, by ascending id. The ids are below the ids of an arena's creatures.
     #[cfg(feature = "colossus")]
     pub(crate) fn terrain_by_id<T>(
@@ -237,7 +256,9 @@ impl Touchable<'_, '_> {
         #[cfg(feature = "rapier")]
         let rapier = rapier.map(|rapier| rapier.with_filter(&wanted).with_origin(self.origin.0));
         for (entity, custom) in &self.custom {
-            all.push((ObstacleId(entity.to_bits()), &*custom.0));
+            if let Some(id) = self.number(entity) {
+                all.push((id, &*custom.0));
+            }
         }
         all.sort_unstable_by_key(|(id, _)| id.0);
         #[cfg(feature = "rapier")]

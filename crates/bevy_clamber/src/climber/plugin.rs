@@ -5,7 +5,7 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
 
 use super::component::{Climber, ClimberBody, ClimberFilter, ClimberState};
-use super::input::{ClimberInput, LatchedInput, latch};
+use super::input::{ClimberInput, LatchedInput, PassedTicks, count_climbs, count_ticks, latch};
 use super::rules::AirVelocity;
 use super::{draw, events, step};
 use crate::needs::need_plugin;
@@ -40,12 +40,15 @@ impl Default for ClimberPlugin {
 impl Plugin for ClimberPlugin {
     fn build(&self, app: &mut App) {
         events::add(app);
+        #[cfg(feature = "colossus")]
+        app.register_type::<super::TerrainId>();
         app.register_type::<Climber>()
             .register_type::<ClimberState>()
             .register_type::<ClimberInput>()
             .register_type::<ClimberFilter>()
             .register_type::<AirVelocity>()
             .init_resource::<AirVelocity>()
+            .init_resource::<PassedTicks>()
             .add_observer(remove_body)
             .configure_sets(
                 self.schedule,
@@ -57,6 +60,10 @@ impl Plugin for ClimberPlugin {
             .add_systems(
                 RunFixedMainLoop,
                 latch.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+            )
+            .add_systems(
+                self.schedule,
+                (count_ticks, count_climbs.in_set(ClamberSystems::Climb)),
             )
             .add_systems(
                 self.schedule,

@@ -6,9 +6,9 @@ use bevy_reflect::prelude::*;
 use clamber_climber::{ContactQuery, ContactRule, CustomMode};
 use glam::DVec3;
 
-/// Decides what climbers may stand on, step onto, hang from, grip and pass through, and with which friction: as a
-/// resource for all of them, as a component for one. Without either, everything is solid, fur is gripped and other
-/// climbers are not held ([`ContactQuery::usual`]).
+/// Decides what a climber may stand on, step onto, hang from, grip and pass through, and with which friction. Insert it
+/// on the climber; the resource [`DefaultClimberRule`] is for all climbers without one. Without either, everything is
+/// solid, fur is gripped and other climbers are not held ([`ContactQuery::usual`]).
 ///
 /// ```
 /// # use bevy_app::App;
@@ -17,17 +17,25 @@ use glam::DVec3;
 /// # let mut app = App::new();
 /// # let (door, owner) = (Entity::PLACEHOLDER, Entity::PLACEHOLDER);
 /// // Everything but stone is gripped, and a door lets its owner pass.
-/// app.insert_resource(ClimberRule::new(move |at| {
+/// let rule = ClimberRule::new(move |at| {
 ///     if at.entity == Some(door) && at.climber == owner {
 ///         return ContactRule::PASS;
 ///     }
 ///     at.usual().with_grip(at.tag().kind != SurfaceKind::Stone)
-/// }));
+/// });
+/// app.insert_resource(DefaultClimberRule(rule));
+/// // This climber grips nothing.
+/// let climber = (Climber::default(), ClimberRule::new(|at| at.usual().with_grip(false)));
+/// app.world_mut().spawn(climber);
 /// ```
 ///
 /// The rule must be a pure function: during a tick it is called any number of times and in any order.
-#[derive(Resource, Clone)]
+#[derive(Component, Clone)]
 pub struct ClimberRule(Arc<RuleFn>);
+
+/// The [`ClimberRule`] of all climbers that have none of their own.
+#[derive(Resource, Clone)]
+pub struct DefaultClimberRule(pub ClimberRule);
 
 type RuleFn = dyn Fn(&ClimberTouch<'_>) -> ContactRule + Send + Sync;
 

@@ -1,5 +1,6 @@
 //! The tick of all climbers.
 
+use bevy_ecs::change_detection::{DetectChanges, Tick};
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 use bevy_math::{Quat, Vec3};
@@ -16,7 +17,7 @@ use super::component::{Climber, ClimberBody, ClimberFilter, ClimberState};
 use super::events::{Told, tell_event};
 use super::input::{ClimberInput, LatchedInput};
 use super::obstacles::{Touchable, touched};
-use super::rules::{AirVelocity, ClimberModes, ClimberRule, ClimberTouch};
+use super::rules::{AirVelocity, ClimberModes, ClimberRule, ClimberTouch, DefaultClimberRule};
 use super::shown::Shown;
 use crate::{PosedSurface, WorldOrigin};
 
@@ -28,7 +29,7 @@ type Followed = (
     Entity,
     Ref<'static, Climber>,
     &'static Transform,
-    Option<&'static ClimberState>,
+    Option<Ref<'static, ClimberState>>,
     Option<&'static mut ClimberBody>,
 );
 
@@ -44,7 +45,7 @@ pub(super) fn follow_changes(
                 // Refused and logged already.
                 continue;
             }
-            match new_body(&climber.config, transform, origin.0, state) {
+            match new_body(&climber.config, transform, origin.0, state.as_deref()) {
                 Ok(body) => {
                     let state = ClimberState(*body.climber.state());
                     commands.entity(entity).try_insert((body, state));
@@ -60,10 +61,16 @@ pub(super) fn follow_changes(
             commands.entity(entity).try_insert(state);
         }
         if let Some(state) = state
-            && state.0 != *body.climber.state()
+            && state.last_changed() != body.written
         {
-            match body.climber.restore(state.0) {
-                Ok(()) => body.forget_motion(),
+            body.written = state.last_changed();
+            let before = body.climber.state().position;
+            match body.take_over(&state) {
+                Ok(()) if state.position != before || body.is_drawn_near(transform, origin.0) => {
+                    body.drawn = *transform;
+                    body.origin = origin.0;
+                }
+                Ok(()) => {}
                 Err(error) => tracing::error!("climber {entity} keeps its state: {error}"),
             }
         }
@@ -89,6 +96,7 @@ fn new_body(
         climber,
         report: StepReport::default(),
         support_mesh: None,
+        written: Tick::new(0),
         drawn: *transform,
         origin,
     })
@@ -101,6 +109,22 @@ fn level(rotation: Quat, up: DVec3, otherwise: DVec3) -> DVec3 {
 }
 
 impl ClimberBody {
+    /// Goes on from a state that the app has written.
+    fn take_over(&mut self, state: &ClimberState) -> Result<(), ClimberError> {
+        if state.0 != *self.climber.state() {
+            self.climber.restore(state.0)?;
+            self.forget_motion();
+        }
+        Ok(())
+    }
+
+    /// True if the climber may have been drawn here, in its last tick or in the one before.
+    fn is_drawn_near(&self, transform: &Transform, origin: DVec3) -> bool {
+        let (state, config) = (self.climber.state(), self.climber.config());
+        let apart = origin + transform.translation.as_dvec3() - state.position;
+        apart.length() <= config.body.radius
+    }
+
     /// The next frames do not draw how it got here.
     fn forget_motion(&mut self) {
         self.shown = Shown::new(self.climber.state());
@@ -148,7 +172,7 @@ pub(super) struct Stepped {
 pub(super) fn step_climbers(
     time: Res<Time>,
     touchable: Touchable<'_, '_>,
-    rule: Option<Res<ClimberRule>>,
+    default_rule: Option<Res<DefaultClimberRule>>,
     modes: Option<Res<ClimberModes>>,
     air: Res<AirVelocity>,
     mut climbers: Query<Stepped>,
@@ -175,7 +199,7 @@ pub(super) fn step_climbers(
         let (input, knockback) = stepped
             .latched
             .take(stepped.input.bypass_change_detection());
-        let rule = stepped.rule.or(rule.as_deref());
+        let rule = stepped.rule.or(default_rule.as_ref().map(|rule| &rule.0));
         let decide = |query: &ContactQuery<'_>| match rule {
             None => query.usual(),
             Some(rule) => rule.decide(&ClimberTouch {
@@ -217,6 +241,7 @@ pub(super) fn step_climbers(
         body.shown.tick(body.climber.state(), surface, dt);
         let state = ClimberState(*body.climber.state());
         stepped.state.set_if_neq(state);
+        body.written = stepped.state.last_changed();
     };
     if count <= FEW {
         climbers.iter_mut().for_each(step);
@@ -269,6 +294,7 @@ impl ClimberBody {
 pub(super) fn tell(
     climbers: Query<(Entity, &ClimberBody), With<Climber>>,
     touchable: Touchable<'_, '_>,
+    origin: Res<WorldOrigin>,
     mut commands: Commands,
 ) {
     let mut eventful: Vec<_> = climbers
@@ -280,6 +306,7 @@ pub(super) fn tell(
         let told = Told {
             entity,
             hit_points: body.climber.state().hit_points,
+            origin: origin.0,
             touched: &|id| touchable.entity(id, touched(body.contacts(), id)),
             supports: &|from: &Attachment| touchable.entity(from.obstacle, Some(&from.material)),
         };

@@ -7,6 +7,8 @@ use bevy_reflect::prelude::*;
 use clamber_colossus::{Creature, CreatureEvent, StrikeHit};
 use glam::DVec3;
 
+use crate::tell::tell;
+
 macro_rules! events {
     ($($(#[$doc:meta])* $name:ident { $($(#[$about:meta])* $field:ident: $type:ty,)* })*) => {
         $(
@@ -217,15 +219,4 @@ pub(super) fn tell_struck(
         attack: creature.kind().brain().path(blow.state).to_owned(),
     };
     tell(commands, struck);
-}
-
-/// Triggers an event, and writes it as a message.
-fn tell<E>(commands: &mut Commands<'_, '_>, event: E)
-where
-    E: Message + Clone + for<'a> EntityEvent<Trigger<'a>: Default>,
-{
-    commands.queue(move |world: &mut World| {
-        world.write_message(event.clone());
-        world.trigger(event);
-    });
 }

@@ -11,6 +11,7 @@ use thiserror::Error;
 use super::assets::{RigJoints, transform};
 use crate::ClamberSystems;
 use crate::needs::need_resource;
+use crate::tell::tell;
 
 /// Plays a clip on the joints of a spawned rig. Insert it on the root, beside [`RigJoints`].
 ///
@@ -144,11 +145,7 @@ pub(crate) fn play(
             continue;
         }
         for marker in passed(joints) {
-            commands.queue(move |world: &mut World| {
-                let passed = RigMarkerPassed { entity, marker };
-                world.write_message(passed.clone());
-                world.trigger(passed);
-            });
+            tell(&mut commands, RigMarkerPassed { entity, marker });
         }
         for (joint, local) in joints.joints.iter().zip(&joints.played.pose.transforms) {
             // A joint that the app has despawned needs no pose.

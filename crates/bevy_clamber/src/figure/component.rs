@@ -1,21 +1,25 @@
 use std::sync::Arc;
 
+use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::*;
+use bevy_ecs::world::DeferredWorld;
 use bevy_math::Vec3;
+use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
 use clamber_body::{Body, BodyError, BodyInput, Figure, Plant};
 use thiserror::Error;
 
 use crate::creature::transform;
+use crate::tell::tell;
 use crate::{SpawnedRig, WorldOrigin};
 
 /// Draws a [`Climber`](crate::Climber) as a humanoid: insert it on the climber's entity.
 /// [`ClimberFigurePlugin`](crate::ClimberFigurePlugin) then writes the `Transform`s of the figure's root and joints in
 /// each frame, so that hands hold skin as it is drawn and feet stand where they came down.
 ///
-/// The rig is an entity of its own, without a parent, that `RigAssets` or your own loader has spawned. Any humanoid
-/// that [`Humanoid::find`](clamber_body::Humanoid::find) knows will do; `clamber_body` says how a file without clips
-/// gets the clips of another one.
+/// The rig is an entity of its own, without a parent, that `RigAssets` or your own loader has spawned. It is despawned
+/// with the climber ([`FigureOf`]). Any humanoid that [`Humanoid::find`](clamber_body::Humanoid::find) knows will do;
+/// `clamber_body` says how a file without clips gets the clips of another one.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -46,6 +50,7 @@ use crate::{SpawnedRig, WorldOrigin};
 /// # let _ = spawn;
 /// ```
 #[derive(Component, Clone, Debug)]
+#[component(on_insert = relate, on_discard = unrelate)]
 pub struct ClimberFigure {
     pub(super) figure: Arc<Figure>,
     #[entities]
@@ -55,6 +60,36 @@ pub struct ClimberFigure {
     pub(super) body: Body,
     /// Where its eyes look, in Bevy's world space; `None` for straight ahead.
     pub look_at: Option<Vec3>,
+}
+
+/// The climber that the rig of this root shows: a relationship, inserted and removed with the climber's
+/// [`ClimberFigure`]. The rig is despawned with the climber.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component, Clone, Debug, PartialEq)]
+#[relationship(relationship_target = ClimberFigures)]
+pub struct FigureOf(pub Entity);
+
+/// The roots of the rigs that show this climber; inserted beside its first [`ClimberFigure`].
+#[derive(Component, Clone, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Component, Clone, Debug, Default, PartialEq)]
+#[relationship_target(relationship = FigureOf, linked_spawn)]
+pub struct ClimberFigures(Vec<Entity>);
+
+/// Relates a rig to its climber.
+fn relate(mut world: DeferredWorld<'_>, context: HookContext) {
+    if let Some(figure) = world.get::<ClimberFigure>(context.entity) {
+        let root = figure.root;
+        let mut commands = world.commands();
+        commands.entity(root).try_insert(FigureOf(context.entity));
+    }
+}
+
+fn unrelate(mut world: DeferredWorld<'_>, context: HookContext) {
+    if let Some(figure) = world.get::<ClimberFigure>(context.entity) {
+        let root = figure.root;
+        let mut commands = world.commands();
+        commands.entity(root).try_remove::<FigureOf>();
+    }
 }
 
 /// A rig has another number of joints than the figure's skeleton.
@@ -143,11 +178,7 @@ impl ClimberFigure {
         commands: &mut Commands<'_, '_>,
     ) {
         for plant in self.body.plants().iter().copied() {
-            commands.queue(move |world: &mut World| {
-                let planted = ClimberPlant { entity, plant };
-                world.write_message(planted);
-                world.trigger(planted);
-            });
+            tell(commands, ClimberPlant { entity, plant });
         }
         let place = self.body.world_from_model();
         if let Ok(mut root) = transforms.get_mut(self.root) {

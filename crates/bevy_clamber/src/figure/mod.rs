@@ -6,7 +6,7 @@ mod pose;
 use bevy_app::{App, Plugin, PostUpdate};
 use bevy_ecs::prelude::*;
 
-pub use component::{ClimberFigure, ClimberPlant, WrongJoints};
+pub use component::{ClimberFigure, ClimberFigures, ClimberPlant, FigureOf, WrongJoints};
 #[cfg(feature = "fight")]
 pub(crate) use pose::pose;
 
@@ -20,6 +20,8 @@ pub struct ClimberFigurePlugin;
 impl Plugin for ClimberFigurePlugin {
     fn build(&self, app: &mut App) {
         app.add_message::<ClimberPlant>()
+            .register_type::<FigureOf>()
+            .register_type::<ClimberFigures>()
             .add_systems(PostUpdate, pose::pose.in_set(ClamberSystems::Body));
     }
 

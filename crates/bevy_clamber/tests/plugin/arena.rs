@@ -126,6 +126,9 @@ fn core(input: &ClimberInput) -> Input {
 #[test]
 fn the_arena_of_an_app_is_bit_for_bit_that_without_bevy() {
     let (mut app, ground_entity) = app(ArenaPlugin::default());
+    app.world_mut()
+        .entity_mut(ground_entity)
+        .insert(TerrainId(7));
     let giant = spawn_rig(&mut app, "colossus.glb");
     let world = app.world_mut();
     world
@@ -135,8 +138,7 @@ fn the_arena_of_an_app_is_bit_for_bit_that_without_bevy() {
 
     let mut alone = arena();
     let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] =
-        [(ObstacleId(ground_entity.to_bits()), &ground)];
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(TerrainId(7).obstacle(), &ground)];
     let (mut told, mut most) = (Vec::new(), 0);
     let mut seen = app.world().resource::<Messages<FightEvent>>().get_cursor();
     for tick in 0..600 {
@@ -212,7 +214,7 @@ fn the_arena_of_an_app_is_bit_for_bit_that_without_bevy() {
 fn events_are_told_once_each_to_readers_and_observers() {
     #[derive(Resource, Default)]
     struct Told([Vec<ArenaEvent>; 2]);
-    let (mut app, ground_entity) = app(ArenaPlugin::default());
+    let (mut app, _) = app(ArenaPlugin::default());
     app.init_resource::<Told>();
     app.add_observer(|event: On<FightEvent>, mut told: ResMut<Told>| {
         told.0[0].push(event.event().0.clone());
@@ -225,8 +227,7 @@ fn events_are_told_once_each_to_readers_and_observers() {
     );
     let mut alone = arena();
     let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] =
-        [(ObstacleId(ground_entity.to_bits()), &ground)];
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(1 << 32), &ground)];
     let mut expected = Vec::new();
     for _ in 0..200 {
         app.update();
@@ -276,6 +277,51 @@ fn it_is_saved_restored_and_refuses_bad_inputs() {
     app.world_mut().remove_resource::<FightArena>();
     app.update();
     assert_eq!(count_arrows(&mut app), 0);
+}
+
+/// A save of another session: its world is spawned in another order, and after other entities.
+#[test]
+fn a_save_goes_on_in_a_session_with_other_entities() {
+    fn session(others: usize, is_reversed: bool, with_ids: bool) -> App {
+        let (mut app, ground) = app(ArenaPlugin::default());
+        app.world_mut().despawn(ground);
+        (0..others).for_each(|_| drop(app.world_mut().spawn_empty()));
+        let mut planes = [(3, DVec3::Y, 0.0), (1, DVec3::X, -300.0)];
+        if is_reversed {
+            planes.reverse();
+        }
+        for (id, normal, offset) in planes {
+            let plane = HalfSpace::behind(normal * offset, normal).unwrap();
+            let mut plane = app.world_mut().spawn(CustomObstacle::new(plane));
+            if with_ids {
+                plane.insert(TerrainId(id));
+            }
+        }
+        app
+    }
+    fn play(app: &mut App, ticks: usize) -> Vec<u64> {
+        let fingerprints = (0..ticks).map(|_| {
+            app.update();
+            app.world().resource::<FightArena>().fingerprint()
+        });
+        fingerprints.collect()
+    }
+    for (others, is_reversed, with_ids) in [(0, true, true), (5, true, true), (5, false, false)] {
+        let mut first = session(0, false, with_ids);
+        play(&mut first, 90);
+        let saved = first.world().resource::<FightArena>().to_bytes().unwrap();
+        let mut second = session(others, is_reversed, with_ids);
+        let mut fight = second.world_mut().resource_mut::<FightArena>();
+        fight.arena_mut().restore_bytes(&saved).unwrap();
+        let on = fight.fighters()[1].climber().state().support;
+        assert!(on.is_some(), "nobody stands on anything");
+        let differ = "entities, order and ids";
+        assert_eq!(
+            play(&mut first, 60),
+            play(&mut second, 60),
+            "{differ}: {others}, {is_reversed}, {with_ids}"
+        );
+    }
 }
 
 fn count_arrows(app: &mut App) -> usize {

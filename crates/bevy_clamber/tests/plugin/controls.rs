@@ -1,12 +1,13 @@
 //! Keyboard, mouse and gamepads steer a climber, in the directions of its camera.
 
 use bevy_app::App;
+use bevy_clamber::ControlDevice;
 use bevy_clamber::prelude::*;
 use bevy_ecs::message::Messages;
 use bevy_ecs::prelude::*;
 use bevy_input::InputPlugin;
 use bevy_input::gamepad::{
-    GamepadAxis, GamepadButton, GamepadConnection, GamepadConnectionEvent,
+    Gamepad, GamepadAxis, GamepadButton, GamepadConnection, GamepadConnectionEvent,
     RawGamepadAxisChangedEvent, RawGamepadButtonChangedEvent, RawGamepadEvent,
 };
 use bevy_input::keyboard::KeyCode;
@@ -153,4 +154,79 @@ fn a_gamepad_walks_looks_jumps_and_grips() {
     app.update();
     assert_eq!(input(&app, climber).walk, Vec3::ZERO);
     assert!(!input(&app, climber).grip);
+}
+
+#[test]
+fn without_its_controls_a_climber_has_no_input() {
+    let (mut app, climber, camera) = app();
+    keys(&mut app).press(KeyCode::KeyW);
+    keys(&mut app).press(KeyCode::ShiftLeft);
+    app.update();
+    assert_ne!(input(&app, climber).walk, Vec3::ZERO);
+    app.world_mut()
+        .get_mut::<ClimberCameraInput>(camera)
+        .unwrap()
+        .stick = Vec2::X;
+    app.world_mut()
+        .entity_mut(climber)
+        .remove::<ClimberControls>();
+    app.update();
+    assert_eq!(input(&app, climber), ClimberInput::default());
+    let turn = app.world().get::<ClimberCameraInput>(camera).unwrap();
+    assert_eq!(*turn, ClimberCameraInput::default());
+}
+
+/// Two players, each with a device of its own, on keys of their own.
+#[test]
+fn each_player_has_a_device_and_bindings_of_its_own() {
+    let (mut app, first, _) = app();
+    let world = app.world_mut();
+    let pads = [(); 2].map(|()| world.spawn(Gamepad::default()).id());
+    let device = |device| ClimberControls {
+        device,
+        ..ClimberControls::default()
+    };
+    world
+        .entity_mut(first)
+        .insert(device(ControlDevice::Keyboard));
+    let mut controls = device(ControlDevice::Gamepad(pads[1]));
+    controls.bindings.jump = vec![GamepadButton::North.into(), KeyCode::KeyX.into()];
+    controls.bindings.actions = vec![(1 << 20, vec![GamepadButton::South.into()])];
+    let second = world.spawn((Climber::default(), controls)).id();
+    let gone = world.spawn_empty().id();
+    world.despawn(gone);
+    let third = device(ControlDevice::Gamepad(gone));
+    let third = world.spawn((Climber::default(), third)).id();
+    for key in [KeyCode::KeyW, KeyCode::KeyX, KeyCode::ShiftLeft] {
+        keys(&mut app).press(key);
+    }
+    let press = |app: &mut App, pad: Entity, button| {
+        let mut pad = app.world_mut().get_mut::<Gamepad>(pad).unwrap();
+        pad.digital_mut().press(button);
+    };
+    press(&mut app, pads[0], GamepadButton::DPadLeft);
+    press(&mut app, pads[1], GamepadButton::North);
+    press(&mut app, pads[1], GamepadButton::South);
+    press(&mut app, pads[1], GamepadButton::DPadRight);
+    app.update();
+    let [first, second, third] = [first, second, third].map(|climber| input(&app, climber));
+    assert!(first.walk.distance(Vec3::X) < 1e-5 && first.grip && !first.jump_held);
+    assert!(second.walk.distance(Vec3::X) < 1e-5, "{second:?}");
+    assert!(second.jump_held && !second.grip && second.actions == 1 << 20);
+    assert_eq!((third.walk, third.jump_held), (Vec3::ZERO, false));
+}
+
+#[test]
+fn up_is_down_for_who_likes_it_so() {
+    let (mut app, climber, camera) = app();
+    let mut controls = app.world_mut().get_mut::<ClimberControls>(climber).unwrap();
+    controls.is_inverted = true;
+    let motion = MouseMotion {
+        delta: Vec2::new(100.0, 50.0),
+    };
+    app.world_mut().write_message(motion);
+    app.update();
+    let turned = *app.world().get::<ClimberCameraInput>(camera).unwrap();
+    let expected = Vec2::new(0.3, 0.15);
+    assert!(turned.swing.distance(expected) < 1e-5, "{turned:?}");
 }

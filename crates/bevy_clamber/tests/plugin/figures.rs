@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use bevy_app::{App, PostUpdate};
 use bevy_asset::Assets;
-use bevy_clamber::WrongJoints;
 use bevy_clamber::clamber_body::{Extremity, Figure, Humanoid, Side};
 use bevy_clamber::clamber_world::HalfSpace;
 use bevy_clamber::prelude::*;
+use bevy_clamber::{FigureOf, WrongJoints};
 use bevy_ecs::prelude::*;
 use bevy_math::{DVec3, Vec3};
 use bevy_mesh::Mesh;
@@ -166,4 +166,24 @@ fn a_rig_of_another_figure_is_refused() {
     }
     let fallen = app.world().get::<ClimberState>(climber).unwrap();
     assert!(fallen.position.y < 1.0 && fallen.position != DVec3::ZERO);
+}
+
+#[test]
+fn a_figure_is_despawned_with_its_climber() {
+    let (mut app, climber, rig) = hero(Vec3::Y);
+    app.update();
+    let world = app.world_mut();
+    assert_eq!(world.get::<FigureOf>(rig.root), Some(&FigureOf(climber)));
+    // Without its figure, the rig stays for something else.
+    let figure = world.entity_mut(climber).take::<ClimberFigure>().unwrap();
+    world.flush();
+    assert_eq!(world.get::<FigureOf>(rig.root), None);
+    world.entity_mut(climber).insert(figure);
+    world.flush();
+    world.despawn(climber);
+    world.flush();
+    for entity in rig.joints.iter().chain(&rig.meshes).chain([&rig.root]) {
+        assert!(world.get_entity(*entity).is_err(), "{entity}");
+    }
+    app.update();
 }

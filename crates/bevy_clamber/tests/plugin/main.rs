@@ -46,7 +46,7 @@ mod obstacles;
 #[cfg(feature = "picking")]
 mod picking;
 mod preludes;
-#[cfg(feature = "rapier")]
+#[cfg(all(feature = "avian", feature = "rapier"))]
 mod proxies;
 mod queries;
 mod relations;

@@ -28,13 +28,13 @@ macro_rules! use_each {
 use_each! { ALWAYS, cfg(all()),
     AirVelocity AnchorLost ClamberPlugins ClamberSystems Climber ClimberBlow ClimberBody ClimberCamera
     ClimberCameraInput ClimberCameraPlugin ClimberFilter ClimberInput ClimberModes ClimberPlugin ClimberRule
-    ClimberState ColliderStatus ColliderTag CustomObstacle DrawnSurfaceQuery ContactRule EntityHit PoseTiming
+    ClimberState ColliderStatus ColliderTag CustomObstacle DefaultClimberRule DrawnSurfaceQuery ContactRule EntityHit PoseTiming
     PosedSurface SkinnedCollider SurfaceAnchor SurfaceFilter SurfaceKind SurfaceQuery SurfaceTag TargetMotion WorldOrigin
 }
 use_each! { AVIAN, cfg(feature = "avian"), AvianProxy AvianProxyPlugin }
 use_each! { COLOSSUS, cfg(feature = "colossus"),
     Colossus ColossusBody ColossusBrain ColossusBurst ColossusEntered ColossusHurt ColossusMarker ColossusNoise
-    ColossusPlanted ColossusPlugin ColossusStaggered ColossusStruck ColossusThrew ColossusWave
+    ColossusPlanted ColossusPlugin ColossusStaggered ColossusStruck ColossusThrew ColossusWave TerrainId
 }
 use_each! { DIAGNOSTICS, cfg(feature = "diagnostics"), SurfaceDiagnosticsPlugin }
 use_each! { FIGHT, cfg(feature = "fight"),

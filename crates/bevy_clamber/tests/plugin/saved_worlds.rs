@@ -60,11 +60,12 @@ fn climbers_and_cameras_are_saved_and_loaded_to_the_bit() {
     let (mut app, floor) = scene();
     let mut config = Climber::colossus_climber().config;
     config.ground.walk_speed = 4.5;
+    let ghost = app.world_mut().spawn_empty().id();
     let climber = (
         Climber::new(config),
         ClimberFilter {
             layers: 5,
-            ..ClimberFilter::default()
+            ignored: [ghost].into_iter().collect(),
         },
         Transform::from_xyz(3.1, 2.6, 0.4).with_rotation(Quat::from_xyzw(0.0, 0.6, 0.0, 0.8)),
     );
@@ -80,6 +81,13 @@ fn climbers_and_cameras_are_saved_and_loaded_to_the_bit() {
     for _ in 0..100 {
         app.update();
     }
+    let blow = ClimberBlow {
+        velocity: Vec3::X * 0.1,
+        damage: 0.0,
+        by: Some(ghost),
+    };
+    let mut input = app.world_mut().get_mut::<ClimberInput>(climber).unwrap();
+    input.strike(blow);
     let registry = app.world().resource::<AppTypeRegistry>().clone();
     let saved = DynamicWorldBuilder::from_world(app.world(), &registry.read())
         .allow_component::<Climber>()
@@ -102,6 +110,11 @@ fn climbers_and_cameras_are_saved_and_loaded_to_the_bit() {
     let loaded = read(&other, &text);
     let mut ids = EntityHashMap::default();
     ids.insert(floor.mesh, there.mesh);
+    // Entities that the loaded ones refer to are others here.
+    other.world_mut().spawn_batch([(), ()]).for_each(drop);
+    let ghost_there = other.world_mut().spawn_empty().id();
+    ids.insert(ghost, ghost_there);
+    assert_ne!(ghost, ghost_there);
     loaded.write_to_world(other.world_mut(), &mut ids).unwrap();
     let (new_climber, new_camera) = (ids[&climber], ids[&camera]);
     let same = |app: &App, other: &App| {
@@ -110,14 +123,22 @@ fn climbers_and_cameras_are_saved_and_loaded_to_the_bit() {
             (
                 *world.get::<Climber>(climber).unwrap(),
                 without_support(world.get::<ClimberState>(climber).unwrap().0),
-                *world.get::<ClimberInput>(climber).unwrap(),
-                world.get::<ClimberFilter>(climber).unwrap().clone(),
+                world.get::<ClimberInput>(climber).unwrap().walk,
+                world.get::<ClimberFilter>(climber).unwrap().layers,
                 *world.get::<Transform>(climber).unwrap(),
             )
         });
         assert_eq!(from, to);
     };
     same(&app, &other);
+    let filter = other.world().get::<ClimberFilter>(new_climber).unwrap();
+    assert_eq!(filter.ignored, [ghost_there].into_iter().collect());
+    let input = other.world().get::<ClimberInput>(new_climber).unwrap();
+    let expected = ClimberBlow {
+        by: Some(ghost_there),
+        ..blow
+    };
+    assert_eq!(input.blow, Some(expected));
     let on = other
         .world()
         .get::<ClimberState>(new_climber)

@@ -219,3 +219,51 @@ impl<T: bevy_reflect::TypePath> TypePathOf for T {
         T::type_path()
     }
 }
+
+/// A game that lets its hero begin anew.
+#[test]
+fn a_transform_elsewhere_beside_other_hit_points_is_a_teleport() {
+    let (mut app, _, climber) = standing(64.0);
+    let there = Vec3::new(4.0, 3.0, 0.5);
+    let world = app.world_mut();
+    world.get_mut::<Transform>(climber).unwrap().translation = there;
+    world.get_mut::<ClimberState>(climber).unwrap().0.hit_points = 0.5;
+    updates(&mut app, 2);
+    let drawn = app.world().get::<Transform>(climber).unwrap().translation;
+    assert!(drawn.distance(there) < 0.02, "{drawn}");
+    updates(&mut app, 30);
+    let now = state(&app, climber);
+    assert_eq!((now.mode, now.hit_points), (ClimberMode::Standing, 0.5));
+}
+
+/// A quick load, a plugin that saves worlds and one that rolls them back write all components.
+#[test]
+fn a_transform_that_is_written_beside_a_state_is_no_teleport() {
+    for in_flight in [true, false] {
+        let (mut app, _, climber) = standing(64.0);
+        input(&mut app, climber).walk = Vec3::X * f32::from(u8::from(in_flight));
+        input(&mut app, climber).jump = in_flight;
+        updates(&mut app, 12);
+        assert_eq!(stands(&app, climber), !in_flight);
+        let saved = (
+            state(&app, climber),
+            *app.world().get::<Transform>(climber).unwrap(),
+        );
+        let mut first = Vec::new();
+        for _ in 0..60 {
+            app.update();
+            first.push(state(&app, climber));
+        }
+        let mut loaded = saved;
+        // Where it stands, the state is the same as before. It is drawn elsewhere nevertheless.
+        loaded.1.translation.y += 0.01;
+        app.world_mut().entity_mut(climber).insert(loaded);
+        for (tick, expected) in first.iter().enumerate() {
+            app.update();
+            assert_eq!(state(&app, climber), *expected, "{in_flight}, {tick}");
+        }
+        let drawn = app.world().get::<Transform>(climber).unwrap().translation;
+        let apart = drawn.as_dvec3().distance(first.last().unwrap().position);
+        assert!(apart < 0.1, "{apart}");
+    }
+}

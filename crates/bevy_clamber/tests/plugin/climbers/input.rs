@@ -216,3 +216,117 @@ fn events_of_one_climber_come_in_the_order_in_which_they_happened() {
         ["jumped", "Falling", "landed", "Standing"]
     );
 }
+
+#[test]
+fn presses_and_blows_in_a_pause_are_forgotten_however_the_game_pauses() {
+    #[derive(Resource)]
+    struct Running;
+    type Switch = fn(&mut App, bool);
+    let pauses: [(&str, Switch); 3] = [
+        ("Time<Virtual>::pause", |app, runs| {
+            let mut time = app.world_mut().resource_mut::<Time<Virtual>>();
+            if runs { time.unpause() } else { time.pause() }
+        }),
+        ("speed 0", |app, runs| {
+            let mut time = app.world_mut().resource_mut::<Time<Virtual>>();
+            time.set_relative_speed(f32::from(u8::from(runs)));
+        }),
+        ("a run condition", |app, runs| {
+            if runs {
+                app.insert_resource(Running);
+            } else {
+                app.world_mut().remove_resource::<Running>();
+            }
+        }),
+    ];
+    for (name, set_running) in pauses {
+        for rate in [32.0, 64.0, 240.0] {
+            let (mut app, _, climber) = standing(64.0);
+            app.insert_resource(Running);
+            app.configure_sets(
+                FixedPostUpdate,
+                ClamberSystems::Climb.run_if(resource_exists::<Running>),
+            );
+            app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(
+                1.0 / rate,
+            )));
+            updates(&mut app, 8);
+            set_running(&mut app, false);
+            updates(&mut app, 8);
+            let blow = ClimberBlow {
+                velocity: Vec3::Y * 8.0,
+                damage: 0.5,
+                by: None,
+            };
+            input(&mut app, climber).jump = true;
+            input(&mut app, climber).strike(blow);
+            updates(&mut app, 8);
+            set_running(&mut app, true);
+            updates(&mut app, 20);
+            let now = state(&app, climber);
+            assert_eq!(now.mode, ClimberMode::Standing, "{name}, {rate}");
+            assert_eq!(now.hit_points, 1.0, "{name}, {rate}");
+            // What is pressed now counts.
+            input(&mut app, climber).strike(blow);
+            updates(&mut app, 8);
+            assert!(state(&app, climber).hit_points < 1.0, "{name}, {rate}");
+        }
+    }
+}
+
+/// A game that removes its dead, and adds sounds and dust to who changes its mode.
+#[test]
+fn a_climber_that_an_observer_despawns_has_no_more_events() {
+    let (mut app, _, climber) = standing(64.0);
+    app.world_mut()
+        .add_observer(|hurt: On<ClimberHurt>, mut commands: Commands| {
+            if hurt.left == 0.0 {
+                commands.entity(hurt.entity).despawn();
+            }
+        });
+    app.world_mut()
+        .add_observer(|changed: On<ClimberChangedMode>, mut commands: Commands| {
+            commands.entity(changed.entity).insert(Moving);
+        });
+    input(&mut app, climber).strike(ClimberBlow {
+        velocity: Vec3::Y * 8.0,
+        damage: 1.0,
+        by: None,
+    });
+    let mut cursor = app
+        .world()
+        .resource::<Messages<ClimberChangedMode>>()
+        .get_cursor();
+    updates(&mut app, 2);
+    assert!(app.world().get_entity(climber).is_err());
+    // Readers learn of the whole tick.
+    let all = app.world().resource::<Messages<ClimberChangedMode>>();
+    assert_eq!(cursor.read(all).count(), 1);
+}
+
+#[test]
+fn points_of_events_are_in_the_space_of_bevy() {
+    let (mut app, floor, _) = standing(64.0);
+    let tag = ColliderTag(SurfaceTag::new(SurfaceKind::Fur));
+    app.world_mut().entity_mut(floor.mesh).insert(tag);
+    app.insert_resource(WorldOrigin(DVec3::new(1e6, 0.0, -3e6)));
+    updates(&mut app, 2);
+    wait(&mut app, floor.mesh);
+    let hanging = climber(&mut app, Vec3::new(15.0, TOP as f32 + 0.5, 0.0));
+    input(&mut app, hanging).grip = true;
+    let mut cursor = app
+        .world()
+        .resource::<Messages<ClimberGrabbed>>()
+        .get_cursor();
+    let mut points = Vec::new();
+    for _ in 0..30 {
+        app.update();
+        let all = app.world().resource::<Messages<ClimberGrabbed>>();
+        points.extend(cursor.read(all).map(|grabbed| grabbed.point));
+    }
+    let drawn = app.world().get::<Transform>(hanging).unwrap().translation;
+    assert!(!points.is_empty());
+    for point in points {
+        assert!(point.distance(drawn) < 1.5, "{point} {drawn}");
+    }
+}

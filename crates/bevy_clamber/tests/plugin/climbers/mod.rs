@@ -6,7 +6,7 @@ mod supports;
 
 use std::time::Duration;
 
-use bevy_app::{App, FixedUpdate, PreUpdate, Update};
+use bevy_app::{App, FixedPostUpdate, FixedUpdate, PreUpdate, Update};
 use bevy_asset::Assets;
 use bevy_clamber::clamber_climber::{ClimberConfig, ClimberMode, ClimberObstacle, CustomMode};
 use bevy_clamber::clamber_climber::{ModeContext, NextMode};

@@ -161,17 +161,19 @@ fn what_can_be_gripped_is_fur_or_what_a_rule_says() {
         grabbed
     };
     assert_eq!(grip(&mut app), None);
-    app.insert_resource(ClimberRule::new(move |at| {
+    app.insert_resource(DefaultClimberRule(ClimberRule::new(move |at| {
         at.usual().with_grip(at.entity == Some(floor.mesh))
-    }));
+    })));
     assert_eq!(grip(&mut app), Some(Some(floor.mesh)));
-    app.insert_resource(ClimberRule::new(|at| at.usual().with_grip(false)));
+    app.insert_resource(DefaultClimberRule(ClimberRule::new(|at| {
+        at.usual().with_grip(false)
+    })));
     let tag = ColliderTag(SurfaceTag::new(SurfaceKind::Fur));
     app.world_mut().entity_mut(floor.mesh).insert(tag);
     app.update();
     wait(&mut app, floor.mesh);
     assert_eq!(grip(&mut app), None);
-    app.world_mut().remove_resource::<ClimberRule>();
+    app.world_mut().remove_resource::<DefaultClimberRule>();
     assert_eq!(grip(&mut app), Some(Some(floor.mesh)));
 }
 
@@ -200,7 +202,7 @@ fn a_door_lets_its_owner_pass_and_nobody_else() {
         if as_component {
             app.world_mut().entity_mut(owner).insert(rule);
         } else {
-            app.insert_resource(rule);
+            app.insert_resource(DefaultClimberRule(rule));
         }
         let passed = walks_to(&mut app, owner);
         assert!(passed > 12.5, "{as_component}: {passed}");
@@ -280,4 +282,35 @@ fn many_climbers_on_many_threads_do_as_one_alone() {
     for (few, many) in few.iter().zip(&many) {
         assert!((few.y - many.y).abs() < 1e-9, "{few} {many}");
     }
+}
+
+/// On Bevy 0.20, a type that is a component and a resource is one for all as soon as one entity has it.
+#[test]
+fn a_rule_of_one_climber_is_no_rule_for_others() {
+    let (mut app, floor, wizard) = standing(64.0);
+    let tag = ColliderTag(SurfaceTag::new(SurfaceKind::Stone));
+    app.world_mut().entity_mut(floor.mesh).insert(tag);
+    updates(&mut app, 2);
+    wait(&mut app, floor.mesh);
+    let grips = || ClimberRule::new(|at| at.usual().with_grip(true));
+    let plain = climber(&mut app, Vec3::new(5.0, 2.5, 0.0));
+    let other = climber(&mut app, Vec3::new(15.0, 2.5, 0.0));
+    app.world_mut().entity_mut(wizard).insert(grips());
+    app.world_mut().entity_mut(other).insert(grips());
+    for climber in [wizard, plain, other] {
+        input(&mut app, climber).grip = true;
+    }
+    updates(&mut app, 30);
+    let modes = [wizard, plain, other].map(|climber| state(&app, climber).mode);
+    let [holds, stands] = [ClimberMode::Holding, ClimberMode::Standing];
+    assert_eq!(modes, [holds, stands, holds]);
+    // The rule for all others does not replace their own.
+    app.insert_resource(DefaultClimberRule(ClimberRule::new(|at| {
+        at.usual().with_grip(false)
+    })));
+    updates(&mut app, 30);
+    assert_eq!(state(&app, wizard).mode, holds);
+    app.world_mut().despawn(wizard);
+    updates(&mut app, 2);
+    assert_eq!(state(&app, other).mode, holds);
 }
