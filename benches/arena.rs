@@ -8,6 +8,7 @@
 //!   eight times a tick, a save and a fingerprint. The same again where a plate breaks in the fourth of the eight
 //!   ticks. Ratios are to a plain tick.
 //! - 64 climbers and four giants: the 99th percentile of the ticks, as a share of a sixtieth of a second.
+//! - 1,000 climbers that walk on level ground, one on each square metre, and 20 m apart. The ratio of the two.
 //! - 500 arrows that stick in the giant: the time that they add to a tick.
 //! - 24 rocks that fall on the giant and are saved with the arena: a tick of the rocks, a save and a load of them.
 //!
@@ -22,7 +23,8 @@ use std::time::Instant;
 
 use clamber::climber::ClimberInput;
 use clamber::world::{
-    Attachment, BodyPoses, DebrisSnapshot, MaterialPoint, Obstacle, ObstacleId, RapierTerrain,
+    Attachment, BodyPoses, DebrisSnapshot, HalfSpace, MaterialPoint, Obstacle, ObstacleId,
+    RapierTerrain,
 };
 use clamber_colossus::{CreatureConfig, CreatureKind};
 use clamber_fight::actions::STAB;
@@ -78,6 +80,7 @@ fn run(brief: bool) -> Result<(), Failure> {
     report(&mut cells, ", a plate breaks", &times, tick);
 
     crowd(&kind, &terrain, rounds / 10 + 2, &mut cells)?;
+    thousand(rounds / 100 + 2, &mut cells)?;
     arrows(&kind, &terrain, rounds, tick, &mut cells)?;
     rocks(&kind, rounds / 3 + 2, tick, &mut cells)?;
     cells.finish("arena", brief)
@@ -304,6 +307,51 @@ fn crowd(
     cells.value("64 climbers and 4 giants, 99 % of ticks within, us", slow);
     let name = "64 climbers and 4 giants, 99 % of ticks / 60th of a second";
     cells.push(name, slow * 60e-6, Bound::Most(0.5));
+    Ok(())
+}
+
+/// Adds rows for 1,000 climbers that walk in circles on level ground, close together and far apart.
+fn thousand(rounds: usize, cells: &mut Cells) -> Result<(), Failure> {
+    /// Climbers in a row.
+    const ROW: u32 = 32;
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let config = FighterConfig {
+        sword: None,
+        bow: None,
+        stones: None,
+        ..FighterConfig::hero()
+    };
+    let mut means = Vec::new();
+    for apart in [1.0, 20.0] {
+        let mut arena = Arena::new(ArenaConfig::default())?;
+        for climber in 0..1000 {
+            let (x, z) = (f64::from(climber % ROW), f64::from(climber / ROW));
+            arena.add_fighter(config, DVec3::new(apart * x, 0.4, apart * z))?;
+        }
+        let mut times = Vec::new();
+        for tick in 0..60 + rounds {
+            let input = |climber: usize| {
+                let (sin, cos) = libm::sincos(tick as f64 / 60.0 + climber as f64);
+                ClimberInput {
+                    walk: DVec3::new(sin, 0.0, cos),
+                    ..ClimberInput::IDLE
+                }
+            };
+            let inputs: Vec<ClimberInput> = (0..1000).map(input).collect();
+            let time = timed(|| Ok(arena.step(&inputs, &terrain).map(drop)?))?;
+            if tick >= 60 {
+                times.push(time);
+            }
+        }
+        means.push(quantile(&mut times, 0.5));
+    }
+    let [close, far] = means[..] else {
+        return Err("two means".into());
+    };
+    cells.value("1,000 climbers, one a square metre, a tick, us", close);
+    cells.value("1,000 climbers, 20 m apart, a tick, us", far);
+    cells.value("1,000 climbers, one a square metre / 20 m apart", close / far);
     Ok(())
 }
 

@@ -154,6 +154,12 @@ impl ClimberObstacle {
         }
     }
 
+    /// Centre and radius of a ball around the body in the whole tick.
+    pub(crate) fn ball(&self) -> (DVec3, f64) {
+        let (middle, radius) = self.now.bounding_ball();
+        (middle - self.way * 0.5, radius + self.way.length() * 0.5)
+    }
+
     fn contact(&self, apart: &Apart) -> Contact {
         let point = apart.on_axis + apart.away * self.now.radius;
         Contact {
@@ -274,8 +280,7 @@ pub(crate) fn between(body: &WorldCapsule, other: &WorldCapsule) -> Apart {
 
 impl Obstacle for ClimberObstacle {
     fn bounds(&self) -> Option<(DVec3, f64)> {
-        let (middle, radius) = self.now.bounding_ball();
-        Some((middle - self.way * 0.5, radius + self.way.length() * 0.5))
+        Some(self.ball())
     }
 
     fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact> {

@@ -3,6 +3,7 @@
 use clamber_climber::{ClimberGroup, ClimberInput, ClimberMode, Knockback, StepRules};
 use clamber_colossus::{Person, Riding, Surroundings};
 use clamber_world::{Obstacle, ObstacleId};
+use glam::DVec3;
 
 use super::member::skins_of;
 use super::{
@@ -286,11 +287,7 @@ impl Arena {
             let found = scratch.inputs.binary_search_by_key(&ours.id(), |one| one.0);
             let player = found.map_or(ClimberInput::IDLE, |index| scratch.inputs[index].1);
             let id = fighter_obstacle(ours.id());
-            let mut bodies = scratch.group.others(id).peekable();
-            for other in self.fighters.iter() {
-                let body = bodies.next_if(|(body, _)| *body == fighter_obstacle(other.id()));
-                obstacles.extend(body.filter(|_| are_near(ours, other, dt)));
-            }
+            scratch.group.near(id, reach(ours, dt), &mut obstacles);
             let fighter = &mut self.fighters[index];
             let rules = StepRules {
                 id: Some(id),
@@ -308,12 +305,14 @@ impl Arena {
                 event: *event,
             }));
             let floor = self.config.floor;
-            let is_dead = fighter.is_dead();
-            let others = self.fighters.iter().enumerate();
-            let others = others.filter(|(other, fighter)| *other != index && !fighter.is_dead());
-            let bodies = others.map(|(_, other)| other.climber().body());
             // Only dead fighters look for room, so the list stays empty for the living.
-            let bodies: Vec<_> = bodies.filter(|_| is_dead).collect();
+            let mut bodies = Vec::new();
+            if fighter.is_dead() {
+                let others = self.fighters.iter().enumerate();
+                let living =
+                    others.filter(|(other, fighter)| *other != index && !fighter.is_dead());
+                bodies.extend(living.map(|(_, other)| other.climber().body()));
+            }
             let room = Room {
                 obstacles: &obstacles[..fixed],
                 bodies: &bodies,
@@ -446,12 +445,9 @@ fn person(fighter: &Fighter, creature: ObstacleId) -> Person {
     }
 }
 
-/// False only if two fighters cannot touch in this tick.
-fn are_near(ours: &Fighter, other: &Fighter, dt: f64) -> bool {
-    let [a, b] = [ours, other].map(|fighter| {
-        let (state, body) = (fighter.climber().state(), fighter.config().climber.body);
-        let reach = REACH_IN_RADII * body.radius + body.height + state.velocity.length() * dt;
-        (state.position, reach)
-    });
-    a.0.distance(b.0) <= a.1 + b.1
+/// A ball around everything that a fighter can touch in this tick: its centre and radius.
+fn reach(fighter: &Fighter, dt: f64) -> (DVec3, f64) {
+    let (state, body) = (fighter.climber().state(), fighter.config().climber.body);
+    let reach = REACH_IN_RADII * body.radius + body.height + state.velocity.length() * dt;
+    (state.position, reach)
 }

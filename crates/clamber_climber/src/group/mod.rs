@@ -1,6 +1,11 @@
 //! The climbers of a scene, as obstacles to each other.
 
+mod tree;
+
 use clamber_world::{Obstacle, ObstacleId};
+use glam::DVec3;
+
+use tree::Tree;
 
 use crate::{Climber, ClimberObstacle};
 
@@ -35,6 +40,11 @@ pub struct ClimberGroup {
     bodies: Vec<(ObstacleId, ClimberObstacle)>,
     /// For each of `bodies`, true once it is where its support carries it.
     carried: Vec<bool>,
+    /// By ascending id, with the index in `bodies`; among equal ids, the first comes first.
+    by_id: Vec<(ObstacleId, u32)>,
+    /// Bounds of `bodies`, for `tree`.
+    bounds: Vec<(DVec3, f64)>,
+    tree: Tree,
 }
 
 impl ClimberGroup {
@@ -58,14 +68,13 @@ impl ClimberGroup {
             .clone()
             .map(|(id, climber)| (id, ClimberObstacle::new(climber, obstacles, dt)));
         self.bodies.extend(made);
-        let on = |climber: &Climber| climber.state().support.map(|on| on.attachment.obstacle);
-        let bodies = &self.bodies;
-        let is_on_another = climbers.clone().map(|(_, climber)| {
-            let carrier = on(climber);
-            bodies.iter().any(|(id, _)| Some(*id) == carrier)
-        });
-        self.carried
-            .extend(is_on_another.map(|is_on_another| !is_on_another));
+        self.by_id.clear();
+        let ids = self.bodies.iter().map(|(id, _)| *id);
+        self.by_id.extend(ids.zip(0..));
+        self.by_id.sort_unstable();
+        for (_, climber) in climbers.clone() {
+            self.carried.push(self.carrier_of(climber).is_none());
+        }
         // From the ground up. Each round settles the climbers on at least one more level, or breaks one circle.
         while self.carried.contains(&false) {
             let mut any = false;
@@ -86,12 +95,18 @@ impl ClimberGroup {
                 self.break_circle(climbers.clone(), dt);
             }
         }
+        self.bounds.clear();
+        let bounds = self.bodies.iter().map(|(_, body)| body.ball());
+        self.bounds.extend(bounds);
+        self.tree.build(&self.bounds);
     }
 
     /// Index in `bodies` of the climber that carries another one.
     fn carrier_of(&self, climber: &Climber) -> Option<usize> {
-        let on = climber.state().support.map(|on| on.attachment.obstacle);
-        self.bodies.iter().position(|(id, _)| Some(*id) == on)
+        let on = climber.state().support?.attachment.obstacle;
+        let first = self.by_id.partition_point(|(id, _)| *id < on);
+        let (id, index) = *self.by_id.get(first)?;
+        (id == on).then_some(index as usize)
     }
 
     /// Finds a circle of climbers in which each carries the next, and lets the one with the lowest id fall: it lets go
@@ -129,6 +144,25 @@ impl ClimberGroup {
     pub fn others(&self, id: ObstacleId) -> impl Iterator<Item = (ObstacleId, &dyn Obstacle)> {
         let others = self.bodies.iter().filter(move |(other, _)| *other != id);
         others.map(|(other, body)| (*other, body as &dyn Obstacle))
+    }
+
+    /// Adds the obstacles of the climbers that are at most `radius` metres from `center` in this tick, and possibly of
+    /// others, by ascending id. The climber with this id is left out. A climber that is farther from others than it
+    /// moves and reaches in a tick does not need them.
+    pub fn near<'a>(
+        &'a self,
+        id: ObstacleId,
+        (center, radius): (DVec3, f64),
+        found: &mut Vec<(ObstacleId, &'a dyn Obstacle)>,
+    ) {
+        let start = found.len();
+        self.tree.near(center, radius, |index| {
+            let (other, body) = &self.bodies[index];
+            if *other != id {
+                found.push((*other, body));
+            }
+        });
+        found[start..].sort_unstable_by_key(|(id, _)| *id);
     }
 
     /// The obstacles of all climbers, in the order of the last update.
