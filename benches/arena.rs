@@ -351,7 +351,10 @@ fn thousand(rounds: usize, cells: &mut Cells) -> Result<(), Failure> {
     };
     cells.value("1,000 climbers, one a square metre, a tick, us", close);
     cells.value("1,000 climbers, 20 m apart, a tick, us", far);
-    cells.value("1,000 climbers, one a square metre / 20 m apart", close / far);
+    cells.value(
+        "1,000 climbers, one a square metre / 20 m apart",
+        close / far,
+    );
     Ok(())
 }
 

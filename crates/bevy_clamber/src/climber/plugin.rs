@@ -63,7 +63,7 @@ impl Plugin for ClimberPlugin {
             )
             .add_systems(
                 self.schedule,
-                (count_ticks, count_climbs.in_set(ClamberSystems::Climb)),
+                (count_ticks, count_climbs.in_set(ClamberSystems::Climb)).chain(),
             )
             .add_systems(
                 self.schedule,

@@ -285,7 +285,9 @@ fn a_save_goes_on_in_a_session_with_other_entities() {
     fn session(others: usize, is_reversed: bool, with_ids: bool) -> App {
         let (mut app, ground) = app(ArenaPlugin::default());
         app.world_mut().despawn(ground);
-        (0..others).for_each(|_| drop(app.world_mut().spawn_empty()));
+        for _ in 0..others {
+            app.world_mut().spawn_empty();
+        }
         let mut planes = [(3, DVec3::Y, 0.0), (1, DVec3::X, -300.0)];
         if is_reversed {
             planes.reverse();
