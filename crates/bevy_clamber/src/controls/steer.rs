@@ -16,47 +16,45 @@ pub(super) struct Devices<'w, 's> {
     keys: Res<'w, ButtonInput<KeyCode>>,
     buttons: Res<'w, ButtonInput<MouseButton>>,
     mouse: Res<'w, AccumulatedMouseMotion>,
-    gamepads: Query<'w, 's, &'static Gamepad>,
+    gamepads: Query<'w, 's, (Entity, &'static Gamepad)>,
 }
 
 /// The devices of one player.
 struct Held<'a> {
-    /// Keyboard and mouse are among them.
-    has_keys: bool,
-    gamepads: Vec<&'a Gamepad>,
+    device: ControlDevice,
     all: &'a Devices<'a, 'a>,
 }
 
-impl Devices<'_, '_> {
-    fn held(&self, device: ControlDevice) -> Held<'_> {
-        Held {
-            has_keys: !matches!(device, ControlDevice::Gamepad(_)),
-            gamepads: match device {
-                ControlDevice::All => self.gamepads.iter().collect(),
-                ControlDevice::Keyboard => Vec::new(),
-                ControlDevice::Gamepad(gamepad) => self.gamepads.get(gamepad).into_iter().collect(),
-            },
-            all: self,
-        }
-    }
-}
-
 impl Held<'_> {
+    /// True if keyboard and mouse are among them.
+    fn has_keys(&self) -> bool {
+        !matches!(self.device, ControlDevice::Gamepad(_))
+    }
+
+    fn gamepads(&self) -> impl Iterator<Item = &Gamepad> {
+        let all = self.all.gamepads.iter();
+        all.filter_map(|(entity, gamepad)| match self.device {
+            ControlDevice::All => Some(gamepad),
+            ControlDevice::Keyboard => None,
+            ControlDevice::Gamepad(held) => (held == entity).then_some(gamepad),
+        })
+    }
+
     fn is_down(&self, buttons: &[ControlButton]) -> bool {
         buttons.iter().any(|button| match *button {
-            ControlButton::Key(key) => self.has_keys && self.all.keys.pressed(key),
-            ControlButton::Mouse(button) => self.has_keys && self.all.buttons.pressed(button),
-            ControlButton::Gamepad(button) => self.gamepads.iter().any(|pad| pad.pressed(button)),
+            ControlButton::Key(key) => self.has_keys() && self.all.keys.pressed(key),
+            ControlButton::Mouse(button) => self.has_keys() && self.all.buttons.pressed(button),
+            ControlButton::Gamepad(button) => self.gamepads().any(|pad| pad.pressed(button)),
         })
     }
 
     fn is_pressed_now(&self, buttons: &[ControlButton]) -> bool {
         buttons.iter().any(|button| match *button {
-            ControlButton::Key(key) => self.has_keys && self.all.keys.just_pressed(key),
-            ControlButton::Mouse(button) => self.has_keys && self.all.buttons.just_pressed(button),
-            ControlButton::Gamepad(button) => {
-                self.gamepads.iter().any(|pad| pad.just_pressed(button))
+            ControlButton::Key(key) => self.has_keys() && self.all.keys.just_pressed(key),
+            ControlButton::Mouse(button) => {
+                self.has_keys() && self.all.buttons.just_pressed(button)
             }
+            ControlButton::Gamepad(button) => self.gamepads().any(|pad| pad.just_pressed(button)),
         })
     }
 
@@ -67,13 +65,14 @@ impl Held<'_> {
     }
 
     fn stick(&self, dead_zone: f32, stick: impl Fn(&Gamepad) -> Vec2) -> Vec2 {
-        let sticks = self.gamepads.iter();
-        let sticks = sticks.map(|gamepad| live(stick(gamepad), dead_zone));
+        let sticks = self
+            .gamepads()
+            .map(|gamepad| live(stick(gamepad), dead_zone));
         sticks.sum::<Vec2>().clamp_length_max(1.0)
     }
 
     fn mouse(&self) -> Vec2 {
-        if self.has_keys {
+        if self.has_keys() {
             self.all.mouse.delta
         } else {
             Vec2::ZERO
@@ -88,7 +87,10 @@ pub(super) fn steer(
     mut cameras: Query<(&ClimberCamera, &mut ClimberCameraInput, &Transform)>,
 ) {
     for (entity, controls, mut input) in &mut climbers {
-        let held = devices.held(controls.device);
+        let held = Held {
+            device: controls.device,
+            all: &devices,
+        };
         let bindings = &controls.bindings;
         let up = if controls.is_inverted { -1.0 } else { 1.0 };
         let mut ahead = Quat::IDENTITY;
@@ -111,13 +113,11 @@ pub(super) fn steer(
         input.crouch = held.is_down(&bindings.crouch);
         input.jump |= held.is_pressed_now(&bindings.jump);
         input.jump_held = held.is_down(&bindings.jump);
-        for (bits, buttons) in &bindings.actions {
-            if held.is_down(buttons) {
-                input.actions |= bits;
-            } else {
-                input.actions &= !bits;
-            }
-        }
+        // Bits without a binding are left to the game. A bit may have several bindings.
+        let bound = bindings.actions.iter().fold(0, |all, (bits, _)| all | bits);
+        let down = bindings.actions.iter();
+        let down = down.filter(|(_, buttons)| held.is_down(buttons));
+        input.actions = down.fold(input.actions & !bound, |all, (bits, _)| all | bits);
     }
 }
 

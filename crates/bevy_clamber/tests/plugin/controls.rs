@@ -191,7 +191,10 @@ fn each_player_has_a_device_and_bindings_of_its_own() {
         .insert(device(ControlDevice::Keyboard));
     let mut controls = device(ControlDevice::Gamepad(pads[1]));
     controls.bindings.jump = vec![GamepadButton::North.into(), KeyCode::KeyX.into()];
-    controls.bindings.actions = vec![(1 << 20, vec![GamepadButton::South.into()])];
+    // One bit with two bindings, of which the second one is not pressed.
+    controls.bindings.actions = [GamepadButton::South, GamepadButton::East]
+        .map(|button| (1 << 20, vec![button.into()]))
+        .into();
     let second = world.spawn((Climber::default(), controls)).id();
     let gone = world.spawn_empty().id();
     world.despawn(gone);
