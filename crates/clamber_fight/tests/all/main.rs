@@ -6,6 +6,7 @@ mod afar;
 mod aims;
 mod arrows;
 mod behind;
+mod crowd;
 mod debris;
 mod fair;
 mod joining;
